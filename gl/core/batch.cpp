@@ -91,7 +91,7 @@ class Batch {
 
   /// Numbers of the model's vertices, in their order, in columns as those of ShadedVertices.
   using ModelBlock = std::array<Column, VertexNumbers().size()>;
-  static constexpr std::size_t kModelColor = 4, kModelU = 8, kModelV = 9;
+  static constexpr std::size_t kModelColor = 4, kModelU = 8;
 
   [[nodiscard]] std::span<Vertex> model_vertices() const {
     const std::span<Vertex> model = scratch<Vertex>(vertices_.size());  // one batch is drawn at a time

@@ -11,24 +11,11 @@
 namespace halfplane::gl {
 namespace {
 
-/// Names that are not in use; they are from now on.
-template <class Object>
-void generate(Context& context, std::map<GLuint, Object>& objects, GLsizei n, GLuint* names) {
-  if (n < 0) return context.fail(GL_INVALID_VALUE);
-  GLuint name = objects.empty() ? 1 : objects.rbegin()->first + 1;
-  for (GLsizei i = 0; i < n; ++i, ++name) {
-    while (name == 0 || objects.contains(name)) ++name;
-    names[i] = name;
-    objects[name];
-  }
-}
-
 /// The binding of a target; null and GL_INVALID_ENUM for an unknown target.
 GLuint* binding_of(Context& context, GLenum target) {
   if (target == GL_ARRAY_BUFFER) return &context.client.array_buffer;
   if (target == GL_ELEMENT_ARRAY_BUFFER) return &context.client.element_buffer;
-  context.fail(GL_INVALID_ENUM);
-  return nullptr;
+  return context.fail(GL_INVALID_ENUM), nullptr;
 }
 
 /// The buffer that is bound to a target; null and an error where there is none.
@@ -48,10 +35,7 @@ std::byte* part_of(Context& context, GLenum target, GLintptr offset, GLsizeiptr 
   const GLenum error = offset < 0 || size < 0 || offset > bytes || size > bytes - offset ? GL_INVALID_VALUE
                        : buffer->mapped                                                  ? GL_INVALID_OPERATION
                                                                                          : GL_NO_ERROR;
-  if (error != GL_NO_ERROR) {
-    context.fail(error);
-    return nullptr;
-  }
+  if (error != GL_NO_ERROR) return context.fail(error), nullptr;
   return buffer->data.data() + offset;
 }
 
@@ -135,10 +119,7 @@ void* map_buffer(Context& context, GLenum target, GLenum access) {
   if (checked == 0) return nullptr;
   const auto buffer = bound_buffer(context, target);
   if (buffer == nullptr) return nullptr;
-  if (buffer->mapped) {
-    context.fail(GL_INVALID_OPERATION);
-    return nullptr;
-  }
+  if (buffer->mapped) return context.fail(GL_INVALID_OPERATION), nullptr;
   buffer->data.reserve(1);  // null says that it could not be mapped
   buffer->access = access;
   buffer->mapped = true;
@@ -148,10 +129,7 @@ void* map_buffer(Context& context, GLenum target, GLenum access) {
 GLboolean unmap_buffer(Context& context, GLenum target) {
   const auto buffer = bound_buffer(context, target);
   if (buffer == nullptr) return GL_FALSE;
-  if (!buffer->mapped) {
-    context.fail(GL_INVALID_OPERATION);
-    return GL_FALSE;
-  }
+  if (!buffer->mapped) return context.fail(GL_INVALID_OPERATION), GL_FALSE;
   buffer->mapped = false;
   return GL_TRUE;
 }

@@ -23,6 +23,22 @@ std::array<Element, n> mix(const std::array<Element, n>& a, const std::array<Ele
   return out;
 }
 
+/// Every member linearly.
+ShadedVertex mix(const ShadedVertex& a, const ShadedVertex& b, double t) {
+  // The distance of a line that passes the eye has no sign: it is that of the mixed place, unless it is a coordinate.
+  const auto is_depth = [](const ShadedVertex& v) { return v.fog_distance == std::abs(v.eye[2]); };
+  ShadedVertex out{.eye = mix(a.eye, b.eye, t),
+                   .clip = mix(a.clip, b.clip, t),
+                   .color = mix(a.color, b.color, t),
+                   .secondary = mix(a.secondary, b.secondary, t),
+                   .tex_coord = mix(a.tex_coord, b.tex_coord, t),
+                   .fog_distance = std::lerp(a.fog_distance, b.fog_distance, t),
+                   .point_size = std::lerp(a.point_size, b.point_size, t),
+                   .edge_flag = a.edge_flag};
+  if (is_depth(a) && is_depth(b)) out.fog_distance = std::abs(out.eye[2]);
+  return out;
+}
+
 double distance(const Plane& plane, const ShadedVertex& v) {
   const Vec4& at = v.*plane.where;
   return std::inner_product(at.begin(), at.end(), plane.equation.begin(), 0.0);
@@ -48,21 +64,6 @@ void clip_polygon(Vertices& vertices, const Plane& plane) {
 }
 
 }  // namespace
-
-ShadedVertex mix(const ShadedVertex& a, const ShadedVertex& b, double t) {
-  // The distance of a line that passes the eye has no sign: it is that of the mixed place, unless it is a coordinate.
-  const auto is_depth = [](const ShadedVertex& v) { return v.fog_distance == std::abs(v.eye[2]); };
-  ShadedVertex out{.eye = mix(a.eye, b.eye, t),
-                   .clip = mix(a.clip, b.clip, t),
-                   .color = mix(a.color, b.color, t),
-                   .secondary = mix(a.secondary, b.secondary, t),
-                   .tex_coord = mix(a.tex_coord, b.tex_coord, t),
-                   .fog_distance = std::lerp(a.fog_distance, b.fog_distance, t),
-                   .point_size = std::lerp(a.point_size, b.point_size, t),
-                   .edge_flag = a.edge_flag};
-  if (is_depth(a) && is_depth(b)) out.fog_distance = std::abs(out.eye[2]);
-  return out;
-}
 
 ShadedVertex window_mix(const ShadedVertex& a, const ShadedVertex& b, double t) {
   const double per_w = (1 - t) / a.clip[3] + t / b.clip[3];

@@ -30,9 +30,7 @@ void clip(Vertices& vertices, const ClipPlanes& planes);
 /// As RasterPosition::window.
 [[nodiscard]] Vec4 window_position(const ViewportState& viewport, const Vec4& clip);
 
-/// Every member linearly between two vertices.
-[[nodiscard]] ShadedVertex mix(const ShadedVertex& a, const ShadedVertex& b, double t);
-/// The same in window coordinates: places are linear there, attributes over w.
+/// Every member between two vertices in window coordinates: places are linear there, attributes over w.
 [[nodiscard]] ShadedVertex window_mix(const ShadedVertex& a, const ShadedVertex& b, double t);
 
 }  // namespace halfplane::gl

@@ -19,9 +19,11 @@ struct Params {
   Vec4 value{};
   bool is_integer = false, is_vector = false;
 };
-[[nodiscard]] Vec4 color_of(const Params& params);  // light.cpp, as param_count()
-/// Values that `pname` takes in the v variants of light, material, fog, ...: 1, 3 or 4; 1 for unknown names.
-[[nodiscard]] int param_count(GLenum pname);
+[[nodiscard]] Vec4 color_of(const Params& params);  // light.cpp
+/// Values that `pname` takes in the v variants of light, material, fog, ...: 1, 3 or 4; 1 for unknown names (parameter.cpp).
+[[nodiscard]] std::size_t param_count(GLenum pname);
+/// Whether they are enums, booleans or whole numbers, which OpenGL ES does not scale in its x variants.
+[[nodiscard]] bool is_unscaled(GLenum pname);
 
 // Vertices and attributes: list, allowed between glBegin and glEnd (vertex.cpp).
 void begin(Context&, GLenum mode);

@@ -97,7 +97,7 @@ struct Context {
   }
 
   // Matrices (matrix.cpp). The last one of each stack is current.
-  std::vector<Mat4> modelview{kIdentity}, projection{kIdentity}, color_matrix{kIdentity};
+  std::vector<Mat4> modelview{kIdentity}, projection{kIdentity};
   std::array<std::vector<Mat4>, kTextureUnits> texture_matrix;
 
   // Between glBegin and glEnd (vertex.cpp).
@@ -144,6 +144,18 @@ struct Context {
   bool compiles_and_executes = false;
   int list_depth = 0;
 };
+
+/// Gives a program names that are not in use; they are from now on.
+template <class Object>
+void generate(Context& context, std::map<GLuint, Object>& objects, GLsizei n, GLuint* names) {
+  if (n < 0) return context.fail(GL_INVALID_VALUE);
+  GLuint name = objects.empty() ? 1 : objects.rbegin()->first + 1;
+  for (GLsizei i = 0; i < n; ++i, ++name) {
+    while (name == 0 || objects.contains(name)) ++name;
+    names[i] = name;
+    objects[name];
+  }
+}
 
 /// The context of this thread; null: none.
 [[nodiscard]] Context* current();

@@ -25,18 +25,6 @@ bool is_proxy(GLenum target) {
 
 }  // namespace
 
-bool is_unscaled(GLenum pname) {
-  static constexpr auto kNames = std::to_array<GLenum>(
-      {GL_FOG_MODE,           GL_FOG_COORDINATE_SOURCE, GL_LIGHT_MODEL_TWO_SIDE, GL_LIGHT_MODEL_LOCAL_VIEWER,
-       GL_TEXTURE_ENV_MODE,   GL_COMBINE_RGB,           GL_COMBINE_ALPHA,        GL_SOURCE0_RGB,
-       GL_SOURCE1_RGB,        GL_SOURCE2_RGB,           GL_SOURCE0_ALPHA,        GL_SOURCE1_ALPHA,
-       GL_SOURCE2_ALPHA,      GL_OPERAND0_RGB,          GL_OPERAND1_RGB,         GL_OPERAND2_RGB,
-       GL_OPERAND0_ALPHA,     GL_OPERAND1_ALPHA,        GL_OPERAND2_ALPHA,       GL_TEXTURE_MIN_FILTER,
-       GL_TEXTURE_MAG_FILTER, GL_TEXTURE_WRAP_S,        GL_TEXTURE_WRAP_T,       GL_TEXTURE_WRAP_R,
-       GL_GENERATE_MIPMAP,    kTextureCropRect});
-  return std::ranges::find(kNames, pname) != kNames.end();
-}
-
 void enter_draw_pixels(Context& context, GLsizei width, GLsizei height, GLenum format, GLenum type,
                        const void* pixels) {
   with_image(context, {width, height, 1}, format, type, pixels,
@@ -91,11 +79,6 @@ void enter_prioritize_textures(Context& context, GLsizei n, const GLuint* names,
   auto pairs = std::make_shared<std::vector<std::pair<GLuint, double>>>();
   for (GLsizei i = 0; i < n; ++i) pairs->emplace_back(names[i], priorities[i]);
   issue<&prioritize_textures>(context, pairs);
-}
-
-void enter_delete_textures(Context& context, GLsizei n, const GLuint* names) {
-  ++context.revision;  // bound ones are unbound
-  delete_textures(context, n, names);
 }
 
 void enter_get_compressed_image(Context& context, GLenum target, GLint level) {

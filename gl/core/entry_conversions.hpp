@@ -34,8 +34,7 @@ template <class Body>
 auto outside_begin(const Body& body) {
   return with_context([&](Context& context) {
     if (!context.inside_begin()) return body(context);
-    context.fail(GL_INVALID_OPERATION);
-    return decltype(body(context))();
+    return context.fail(GL_INVALID_OPERATION), decltype(body(context))();
   });
 }
 
@@ -90,8 +89,6 @@ constexpr double norm(T value) {
     return (2.0 * value + 1) / static_cast<double>(std::numeric_limits<std::make_unsigned_t<T>>::max());
 }
 
-/// Whether the values of `pname` are enums or booleans, which OpenGL ES does not scale in its x variants.
-[[nodiscard]] bool is_unscaled(GLenum pname);
 template <class T>
 Params params_of(GLenum pname, std::span<const Raw<T>> values, bool is_vector) {
   Params params{{}, std::is_integral_v<Raw<T>>, is_vector};
@@ -155,7 +152,6 @@ void enter_tex_sub_image(Context& context, int dimensions, GLenum target, GLint 
                          GLsizei width, GLsizei height, GLsizei depth, GLenum format, GLenum type, const void* pixels);
 void enter_call_lists(Context& context, GLsizei n, GLenum type, const void* lists);
 void enter_prioritize_textures(Context& context, GLsizei n, const GLuint* names, const GLfloat* priorities);
-void enter_delete_textures(Context& context, GLsizei n, const GLuint* names);
 void enter_get_compressed_image(Context& context, GLenum target, GLint level);
 
 template <class T>

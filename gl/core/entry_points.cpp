@@ -164,7 +164,7 @@ void add_others(EntryPoints& to) {
                       ENTRY(glDeleteBuffers, now<&delete_buffers>),
                       ENTRY(glDeleteLists, now<&delete_lists>),
                       ENTRY(glDeleteQueries, now<&delete_queries>),
-                      ENTRY(glDeleteTextures, now<&enter_delete_textures>),
+                      ENTRY(glDeleteTextures, now<&delete_textures>),
                       ENTRY(glDepthFunc, listed<&depth_func>),
                       ENTRY(glDepthMask, listed<&depth_mask>),
                       ENTRY(glDepthRange, listed<&depth_range>),

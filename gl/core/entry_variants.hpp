@@ -133,7 +133,7 @@ void add_parameters_of(EntryPoints& to, const std::string& letters, void (*)(Con
   });
   to[letters + "v"] = Entry<void(Enum..., const Raw<T>*)>::of([](Enum... enums, const Raw<T>* values) {
     const GLenum pname = last_of(enums...);
-    listed<Command>(enums..., params_of<T>(pname, {values, static_cast<std::size_t>(param_count(pname))}, true));
+    listed<Command>(enums..., params_of<T>(pname, {values, param_count(pname)}, true));
   });
 }
 template <auto Command, class... T>

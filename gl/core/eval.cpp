@@ -161,10 +161,7 @@ void map2(Context& context, GLenum target, double u1, double u2, GLint uorder, d
 }
 
 Values get_map(Context& context, GLenum target, GLenum query) {
-  if (map_components(target) == 0) {
-    context.fail(GL_INVALID_ENUM);
-    return {};
-  }
+  if (map_components(target) == 0) return context.fail(GL_INVALID_ENUM), Values{};
   const EvaluatorMap& map = map_of(context, target);
   const std::ptrdiff_t dimensions = is_map2(target) ? 2 : 1;
   switch (query) {

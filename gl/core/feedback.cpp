@@ -59,10 +59,7 @@ void feed_vertex(Context& context, const Vec4& window, const Vec4& color, const 
 /// Whether names are kept, after writing the record of a hit under the names before the change.
 bool changes_names(Context& context, bool is_allowed, GLenum error) {
   if (context.render_mode != GL_SELECT) return false;
-  if (!is_allowed) {
-    context.fail(error);
-    return false;
-  }
+  if (!is_allowed) return context.fail(error), false;
   record_hit(context);
   return true;
 }
@@ -93,15 +90,10 @@ void pass_through(Context& context, double token) {
 }
 
 GLint set_render_mode(Context& context, GLenum mode) {
-  if (mode != GL_RENDER && mode != GL_SELECT && mode != GL_FEEDBACK) {
-    context.fail(GL_INVALID_ENUM);
-    return 0;
-  }
+  if (mode != GL_RENDER && mode != GL_SELECT && mode != GL_FEEDBACK) return context.fail(GL_INVALID_ENUM), 0;
   if ((mode == GL_SELECT && context.select_buffer == nullptr) ||
-      (mode == GL_FEEDBACK && context.feedback_buffer == nullptr)) {
-    context.fail(GL_INVALID_OPERATION);
-    return 0;
-  }
+      (mode == GL_FEEDBACK && context.feedback_buffer == nullptr))
+    return context.fail(GL_INVALID_OPERATION), 0;
   GLint result = 0;
   if (context.render_mode == GL_SELECT) {
     record_hit(context);

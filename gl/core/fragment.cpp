@@ -30,12 +30,10 @@ bool has_buffer(Context& context, GLenum mode, bool is_single) {
   if (is_one_of(mode, {GL_FRONT, GL_FRONT_LEFT, GL_LEFT})) return true;
   if (is_one_of(mode, {GL_BACK, GL_BACK_LEFT})) {
     if (!is_single) return true;
-    context.fail(GL_INVALID_OPERATION);
-    return false;
+    return context.fail(GL_INVALID_OPERATION), false;
   }
   const bool is_absent = is_one_of(mode, {GL_RIGHT, GL_FRONT_RIGHT, GL_BACK_RIGHT, GL_AUX0, GL_AUX1, GL_AUX2, GL_AUX3});
-  context.fail(is_absent ? GL_INVALID_OPERATION : GL_INVALID_ENUM);
-  return false;
+  return context.fail(is_absent ? GL_INVALID_OPERATION : GL_INVALID_ENUM), false;
 }
 bool is_front(GLenum buffer) { return buffer == GL_FRONT || buffer == GL_FRONT_LEFT; }
 /// The back buffer stands for both.
@@ -97,9 +95,7 @@ void return_accumulated(Context& context, float value) {
   halfplane::State state = fill_state(context);
   state.color_mask = context.state.color.write;
   state.dither = context.state.color.dither && context.drawable->frame.options().config.dither_units != 0;
-  for (int y = 0; y < image.height; y += kLargestTexture)
-    for (int x = 0; x < image.width; x += kLargestTexture)
-      draw_texels(context, state, part_of(image, x, y), in.left + x, in.bottom + y, 1, 1, 0, 1, false);
+  draw_image(context, state, image, in.left, in.bottom);
 }
 
 }  // namespace

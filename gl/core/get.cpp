@@ -385,8 +385,7 @@ GLboolean is_enabled(Context& context, GLenum cap) {
   if (const bool* flag = enable_flag(context, cap)) return *flag;
   const std::size_t array = find_array(context.client, &ArrayKind::enable, cap);
   if (array != kArrays) return context.client.array[array].enabled;
-  context.fail(GL_INVALID_ENUM);
-  return GL_FALSE;
+  return context.fail(GL_INVALID_ENUM), GL_FALSE;
 }
 
 Values get_pixel_map(Context& context, GLenum map) {

@@ -231,9 +231,39 @@ void draw_through_host(Context& context, halfplane::State state, Topology topolo
       for (std::size_t c = 0; c < 4; ++c)
         result[c] = is_drawn && mask[c] ? operated(op, source[c], stored[c]) : static_cast<std::uint8_t>(stored[c]);
     }
-  for (int top = 0; top < image.height; top += kLargestTexture)
-    for (int left = 0; left < image.width; left += kLargestTexture)
-      draw_texels(context, all_pixels(), part_of(image, left, top), left, top, 1, 1, 0, 1, false);
+  draw_image(context, all_pixels(), image, 0, 0);
+}
+
+/// As draw_rectangle(), in a state of space window. Culling and texture are set here.
+void draw_texels(Context& context, halfplane::State state, const halfplane::Texture& texels, double x, double y,
+                 double zoom_x, double zoom_y, double z, double w, bool has_logic_op) {
+  Frame& frame = context.drawable->frame;
+  const auto across = zoomed(x, zoom_x, texels.width(), frame.width());
+  const auto up = zoomed(y, zoom_y, texels.height(), frame.height());
+  if (!across || !up) return;
+  const Signature signature = signature_of(texels);
+  // The highest bit keeps them apart from the revisions of textures.
+  state.texture =
+      frame.texture((signature.low ^ signature.high) | std::uint64_t{1} << 63, [&texels] { return padded(texels); });
+  state.texture_min = TextureMin::nearest;
+  state.texture_mag = TextureMag::nearest;
+  state.texture_wrap = {TextureWrap::clamp, TextureWrap::clamp};
+  state.texture_combine = TextureCombine::replace;
+  state.cull = Cull::none;
+  const auto side = [](int size) { return static_cast<double>(std::bit_ceil(static_cast<unsigned>(size))); };
+  std::vector<Vertex> corners;
+  for (const End& row : *up)
+    for (const End& column : *across)
+      corners.push_back({column.at,
+                         row.at,
+                         held(z),
+                         w > 0 ? w : 1e-6,  // the distance that fog takes
+                         {255, 255, 255, 255},
+                         column.texel / side(texels.width()),
+                         row.texel / side(texels.height())});
+  static constexpr std::array<std::uint32_t, 4> kStrip{0, 1, 2, 3};
+  if (has_logic_op) return draw_in(context, state, Topology::triangle_strip, corners, kStrip);
+  frame.draw(state, Topology::triangle_strip, corners, kStrip);
 }
 
 }  // namespace
@@ -365,44 +395,18 @@ void draw_in(Context& context, halfplane::State state, Topology topology, std::s
   draw_channels(context, state, topology, vertices, indices, inverted, {255, 255, 255, 255});
 }
 
-void draw_texels(Context& context, halfplane::State state, const halfplane::Texture& texels, double x, double y,
-                 double zoom_x, double zoom_y, double z, double w, bool has_logic_op) {
-  Frame& frame = context.drawable->frame;
-  const auto across = zoomed(x, zoom_x, texels.width(), frame.width());
-  const auto up = zoomed(y, zoom_y, texels.height(), frame.height());
-  if (!across || !up) return;
-  const Signature signature = signature_of(texels);
-  // The highest bit keeps them apart from the revisions of textures.
-  state.texture =
-      frame.texture((signature.low ^ signature.high) | std::uint64_t{1} << 63, [&texels] { return padded(texels); });
-  state.texture_min = TextureMin::nearest;
-  state.texture_mag = TextureMag::nearest;
-  state.texture_wrap = {TextureWrap::clamp, TextureWrap::clamp};
-  state.texture_combine = TextureCombine::replace;
-  state.cull = Cull::none;
-  const auto side = [](int size) { return static_cast<double>(std::bit_ceil(static_cast<unsigned>(size))); };
-  std::vector<Vertex> corners;
-  for (const End& row : *up)
-    for (const End& column : *across)
-      corners.push_back({column.at,
-                         row.at,
-                         held(z),
-                         w > 0 ? w : 1e-6,  // the distance that fog takes
-                         {255, 255, 255, 255},
-                         column.texel / side(texels.width()),
-                         row.texel / side(texels.height())});
-  static constexpr std::array<std::uint32_t, 4> kStrip{0, 1, 2, 3};
-  if (has_logic_op) return draw_in(context, state, Topology::triangle_strip, corners, kStrip);
-  frame.draw(state, Topology::triangle_strip, corners, kStrip);
-}
-
-halfplane::Texture part_of(const TexelImage& image, int left, int top) {
-  TexelImage part{std::min(kLargestTexture, image.width - left), std::min(kLargestTexture, image.height - top), {}};
-  for (int row = top; row < top + part.height; ++row) {
-    const auto first = image.texel.begin() + std::ptrdiff_t{row} * image.width + left;
-    part.texel.insert(part.texel.end(), first, first + part.width);
-  }
-  return make_texture("pixels", part, TextureFormat::rgba8888, Mips::none);
+void draw_image(Context& context, const halfplane::State& state, const TexelImage& image, int x, int y, double z,
+                double w) {
+  for (int top = 0; top < image.height; top += kLargestTexture)
+    for (int left = 0; left < image.width; left += kLargestTexture) {
+      TexelImage part{std::min(kLargestTexture, image.width - left), std::min(kLargestTexture, image.height - top), {}};
+      for (int row = top; row < top + part.height; ++row) {
+        const auto first = image.texel.begin() + std::ptrdiff_t{row} * image.width + left;
+        part.texel.insert(part.texel.end(), first, first + part.width);
+      }
+      draw_texels(context, state, make_texture("pixels", part, TextureFormat::rgba8888, Mips::none), x + left, y + top,
+                  1, 1, z, w, false);
+    }
 }
 
 void draw_rectangle(Context& context, const halfplane::Texture& texels, double x, double y, double zoom_x,
@@ -445,10 +449,7 @@ void draw_rectangle(Context& context, const halfplane::Texture& texels, double x
     Texel& result = image.texel.emplace_back();
     for (std::size_t c = 0; c < 4; ++c) result[c] = operated(op, source[c], stored[c]);
   });
-  for (int top = 0; top < image.height; top += kLargestTexture)
-    for (int left = 0; left < image.width; left += kLargestTexture)
-      draw_texels(context, *state, part_of(image, left, top), columns.first + left, rows.first + top, 1, 1, z, w,
-                  false);
+  draw_image(context, *state, image, columns.first, rows.first, z, w);
 }
 
 }  // namespace halfplane::gl

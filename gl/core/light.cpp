@@ -8,6 +8,21 @@ namespace {
 
 Place color_place(Vec4& color) { return {&color, {}, ValueKind::color}; }
 
+/// Front and back, of which `face` is one or both; false and GL_INVALID_ENUM for an unknown face.
+bool faces_of(Context& context, GLenum face, std::array<bool, 2>& faces) {
+  faces = {face != GL_BACK, face != GL_FRONT};
+  if (face == GL_FRONT || face == GL_BACK || face == GL_FRONT_AND_BACK) return true;
+  return context.fail(GL_INVALID_ENUM), false;
+}
+
+/// The light of `name`; null and GL_INVALID_ENUM for an unknown name.
+Light* light_of(Context& context, GLenum name) {
+  if (name >= GL_LIGHT0 && name < GL_LIGHT0 + kLights) return &context.state.lighting.light[name - GL_LIGHT0];
+  return context.fail(GL_INVALID_ENUM), nullptr;
+}
+
+}  // namespace
+
 std::optional<Place> light_place(Light& light, GLenum pname) {
   if (pname - GL_CONSTANT_ATTENUATION < 3)
     return Place{.where = &light.attenuation[pname - GL_CONSTANT_ATTENUATION], .low = 0};
@@ -36,49 +51,11 @@ std::optional<Place> material_place(Material& material, GLenum pname) {
   }
 }
 
-/// Front and back, of which `face` is one or both; false and GL_INVALID_ENUM for an unknown face.
-bool faces_of(Context& context, GLenum face, std::array<bool, 2>& faces) {
-  faces = {face != GL_BACK, face != GL_FRONT};
-  if (face == GL_FRONT || face == GL_BACK || face == GL_FRONT_AND_BACK) return true;
-  context.fail(GL_INVALID_ENUM);
-  return false;
-}
-
-/// The light of `name`; null and GL_INVALID_ENUM for an unknown name.
-Light* light_of(Context& context, GLenum name) {
-  if (name >= GL_LIGHT0 && name < GL_LIGHT0 + kLights) return &context.state.lighting.light[name - GL_LIGHT0];
-  context.fail(GL_INVALID_ENUM);
-  return nullptr;
-}
-
-}  // namespace
-
 Vec4 color_of(const Params& params) {
   Vec4 color = params.value;
   if (params.is_integer)
     for (double& value : color) value = (2 * value + 1) / 4294967295.0;
   return color;
-}
-
-int param_count(GLenum pname) {
-  switch (pname) {
-    case GL_AMBIENT:
-    case GL_DIFFUSE:
-    case GL_SPECULAR:
-    case GL_EMISSION:
-    case GL_AMBIENT_AND_DIFFUSE:
-    case GL_POSITION:
-    case GL_LIGHT_MODEL_AMBIENT:
-    case GL_FOG_COLOR:
-    case GL_TEXTURE_ENV_COLOR:
-    case GL_TEXTURE_BORDER_COLOR:
-    case GL_OBJECT_PLANE:
-    case GL_EYE_PLANE: return 4;
-    case GL_SPOT_DIRECTION:
-    case GL_COLOR_INDEXES:
-    case GL_POINT_DISTANCE_ATTENUATION: return 3;
-    default: return 1;
-  }
 }
 
 void light(Context& context, GLenum name, GLenum pname, Params params) {

@@ -53,10 +53,10 @@ struct BufferObject {
 };
 
 struct SharedObjects {
-  std::mutex mutex;  ///< held by each entry point that looks here
-  std::map<GLuint, std::shared_ptr<TextureObject>> textures;
+  std::mutex mutex;                                           ///< held by each entry point that looks here
+  std::map<GLuint, std::shared_ptr<TextureObject>> textures;  ///< null: a name without an object yet, as of buffers
   std::map<GLuint, std::shared_ptr<DisplayList>> lists;
-  std::map<GLuint, std::shared_ptr<BufferObject>> buffers;  ///< null: a name without an object yet
+  std::map<GLuint, std::shared_ptr<BufferObject>> buffers;
 
   /// The buffer of a name; null: none. Not while `mutex` is held.
   [[nodiscard]] std::shared_ptr<BufferObject> buffer(GLuint name) {

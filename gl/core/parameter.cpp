@@ -1,6 +1,7 @@
 #include "parameter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "matrix.hpp"
@@ -46,7 +47,42 @@ GLenum assign(const Place& place, const Params& params, bool takes_scalars) {
   return GL_NO_ERROR;
 }
 
+/// The place that a name has in any command with Params, in no context's state.
+std::optional<Place> any_place(GLenum pname) {
+  static State state;
+  static TextureParameters texture;
+  constexpr std::array<std::optional<Place> (*)(GLenum), 8> kPlaces{
+      [](GLenum name) { return material_place(state.lighting.material[0], name); },
+      [](GLenum name) { return light_place(state.lighting.light[0], name); },
+      [](GLenum name) { return light_model_place(state.lighting, name); },
+      [](GLenum name) { return fog_place(state.fog, name); },
+      [](GLenum name) { return point_place(state.point, name); },
+      [](GLenum name) { return environment_place(state.texture.unit[0], GL_TEXTURE_ENV, name); },
+      [](GLenum name) { return generation_place(state.texture.unit[0], GL_S, name); },
+      [](GLenum name) { return texture_place(texture, name); }};
+  for (const auto& place_of : kPlaces)
+    if (const auto place = place_of(pname)) return place;
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::size_t param_count(GLenum pname) {
+  const auto count = []<class T>(const T*) -> std::size_t {
+    if constexpr (requires { std::tuple_size<T>::value; }) return std::tuple_size_v<T>;
+    return 1;
+  };
+  const auto place = any_place(pname);
+  return place ? std::visit(count, place->where) : 1;
+}
+
+bool is_unscaled(GLenum pname) {
+  const auto is_whole = []<class T>(const T*) {
+    return std::is_same_v<T, GLenum> || std::is_same_v<T, bool> || std::is_same_v<T, std::array<int, 4>>;
+  };
+  const auto place = any_place(pname);
+  return place && std::visit(is_whole, place->where);
+}
 
 bool set_parameter(Context& context, const std::optional<Place>& place, const Params& params, bool takes_scalars) {
   const GLenum error = place ? assign(*place, params, takes_scalars) : GLenum{GL_INVALID_ENUM};

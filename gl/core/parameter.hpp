@@ -28,11 +28,16 @@ bool set_parameter(Context& context, const std::optional<Place>& place, const Pa
                    bool takes_scalars = true);
 [[nodiscard]] Values parameter(Context& context, const std::optional<Place>& place);
 
-// Places that glGet queries, too. None: no name of theirs.
-[[nodiscard]] std::optional<Place> fog_place(FogState& fog, GLenum pname);                    // light.cpp
-[[nodiscard]] std::optional<Place> light_model_place(LightingState& lighting, GLenum pname);  // light.cpp
-[[nodiscard]] std::optional<Place> point_place(PointState& point, GLenum pname);              // vertex.cpp
-[[nodiscard]] std::optional<Place> transfer_place(PixelState& pixel, GLenum pname);           // pixels.cpp
-[[nodiscard]] std::optional<Place> store_place(ClientState& client, GLenum pname);            // pixels.cpp
+// None: no name of theirs. glGet queries the last five, too.
+[[nodiscard]] std::optional<Place> light_place(Light& light, GLenum pname);            // light.cpp
+[[nodiscard]] std::optional<Place> material_place(Material& material, GLenum pname);   // light.cpp
+[[nodiscard]] std::optional<Place> texture_place(TextureParameters& t, GLenum pname);  // texture_state.cpp
+[[nodiscard]] std::optional<Place> environment_place(TextureUnit& unit, GLenum target, GLenum pname);  // likewise
+[[nodiscard]] std::optional<Place> generation_place(TextureUnit& unit, GLenum coord, GLenum pname);    // likewise
+[[nodiscard]] std::optional<Place> fog_place(FogState& fog, GLenum pname);                             // light.cpp
+[[nodiscard]] std::optional<Place> light_model_place(LightingState& lighting, GLenum pname);           // light.cpp
+[[nodiscard]] std::optional<Place> point_place(PointState& point, GLenum pname);                       // vertex.cpp
+[[nodiscard]] std::optional<Place> transfer_place(PixelState& pixel, GLenum pname);                    // pixels.cpp
+[[nodiscard]] std::optional<Place> store_place(ClientState& client, GLenum pname);                     // pixels.cpp
 
 }  // namespace halfplane::gl

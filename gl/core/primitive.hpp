@@ -55,12 +55,9 @@ void fill_target(Context& context, const halfplane::State& state, const std::arr
 /// Draws in the state as it is, but for the logic operation, which may change the vertices' colours.
 void draw_in(Context& context, halfplane::State state, Topology topology, std::span<Vertex> vertices,
              std::span<const std::uint32_t> indices);
-/// Texels as draw_rectangle() has them, in a state of space window. Culling and texture are set here.
-void draw_texels(Context& context, halfplane::State state, const halfplane::Texture& texels, double x, double y,
-                 double zoom_x, double zoom_y, double z, double w, bool has_logic_op);
-
-/// The part of an image of any size, from (left, top) on, that a texture holds.
-[[nodiscard]] halfplane::Texture part_of(const TexelImage& image, int left, int top);
+/// Draws texels, one for each pixel from (x, y) on, in a state of space window. Culling and texture are set here.
+void draw_image(Context& context, const halfplane::State& state, const TexelImage& image, int x, int y, double z = 0,
+                double w = 1);
 
 /// In selection and feedback: takes a point, a line or a polygon after clipping, `clip` in window coordinates as
 /// RasterPosition::window and colours in the first place. `token`: GL_POINT_TOKEN, GL_LINE_TOKEN, ...

@@ -15,7 +15,6 @@ namespace {
 constexpr double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 constexpr Vec3 scaled(const Vec3& a, double factor) { return {a[0] * factor, a[1] * factor, a[2] * factor}; }
 constexpr Vec3 sum(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-constexpr Vec3 difference(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 constexpr Vec3 xyz(const Vec4& v) { return {v[0], v[1], v[2]}; }
 /// Zero stays zero.
 Vec3 unit(const Vec3& a) {

@@ -48,8 +48,7 @@ constexpr auto kImageTargets = std::to_array<ImageTarget>({{GL_TEXTURE_1D, 1, 0,
 const ImageTarget* image_target(Context& context, GLenum name, int dimensions) {
   const auto* target = std::ranges::find(kImageTargets, name, &ImageTarget::name);
   if (target != kImageTargets.end() && (dimensions == 0 || target->dimensions == dimensions)) return target;
-  context.fail(GL_INVALID_ENUM);
-  return nullptr;
+  return context.fail(GL_INVALID_ENUM), nullptr;
 }
 
 /// Internal formats from `first` to `last` and the base format of each (table 3.16). No compressed format exists, so that
@@ -97,6 +96,12 @@ GLint kept_format(GLint internal_format) {
   return is_compressed ? static_cast<GLint>(base_format(internal_format)) : internal_format;
 }
 
+Texel texel_of_depth(double depth) {
+  const auto code = static_cast<std::uint32_t>(std::llround(held(depth) * kLargestDepth));
+  Texel texel{};
+  for (std::size_t c = 0; c < 4; ++c) texel[c] = static_cast<std::uint8_t>(code >> (24 - 8 * c) & 255);
+  return texel;
+}
 using gl::stored_texel;
 Texel stored_texel(GLenum base, const std::array<float, 4>& color) {
   return base == GL_DEPTH_COMPONENT ? texel_of_depth(color[0]) : stored_texel(base, texel_of(color));
@@ -128,8 +133,11 @@ std::size_t texel_at(int width, int height, int x, int y, int z) {
              static_cast<std::size_t>(width) +
          static_cast<std::size_t>(x);
 }
-/// The border along a side of an image: a side that a target lacks has length 1 and no border.
-int border_along(int side, int border) { return side > 1 ? border : 0; }
+/// An image without texels, of sides that hold the border. A side that a target lacks has length 1 and no border.
+TextureImage empty_image(const std::array<int, 3>& sides, GLint internal_format, int border) {
+  const auto inner = [&](std::size_t i) { return sides[i] > 1 ? sides[i] - 2 * border : sides[i]; };
+  return {inner(0), inner(1), inner(2), border, kept_format(internal_format), base_format(internal_format), {}};
+}
 
 /// The object that a name is bound to. `create`: a name without one gets one.
 std::shared_ptr<TextureObject> named_texture(SharedObjects& shared, GLuint name, GLenum target, bool create) {
@@ -163,8 +171,7 @@ TextureImage* image_of(Context& context, const ImageTarget& target, GLint level)
 
 bool is_level(Context& context, GLint level) {
   if (level >= 0 && level <= kLastLevel) return true;
-  context.fail(GL_INVALID_VALUE);
-  return false;
+  return context.fail(GL_INVALID_VALUE), false;
 }
 
 /// Whether data of this format can become texels of that base format; else the error.
@@ -240,10 +247,7 @@ enum class SizeCheck { refused, too_large, fits };
 /// The errors that an image has by its sizes. Too large is an error but for proxies.
 SizeCheck check_size(Context& context, const ImageTarget& target, GLint level, const std::array<int, 3>& sides,
                      GLint border) {
-  const auto refuse = [&context] {
-    context.fail(GL_INVALID_VALUE);
-    return SizeCheck::refused;
-  };
+  const auto refuse = [&context] { return context.fail(GL_INVALID_VALUE), SizeCheck::refused; };
   if (!is_level(context, level)) return SizeCheck::refused;
   if (border != 0 && border != 1) return refuse();
   const int largest = target.dimensions == 3 ? kLargestTexture3D : kLargestTexture;
@@ -275,8 +279,7 @@ void store_image(Context& context, const ImageTarget& target, GLint level, Textu
 /// Depth textures have one or two dimensions.
 bool takes_base(Context& context, const ImageTarget& target, GLenum base) {
   if (base != GL_DEPTH_COMPONENT || target.index < 2) return true;
-  context.fail(GL_INVALID_OPERATION);
-  return false;
+  return context.fail(GL_INVALID_OPERATION), false;
 }
 
 /// The level that a sub image goes to. Null: the error has been reported. `end`: the texel after the last one, or `offset`
@@ -318,6 +321,21 @@ std::shared_ptr<const Image> copied(Context& context, GLint x, GLint y, GLsizei 
   return transferred(context, std::make_shared<const Image>(read_rectangle(context, x, y, width, height, format)));
 }
 
+/// An image as an internal format keeps it, without its border.
+TextureImage stored_image(const Image& image, GLint internal_format, int border) {
+  const GLenum base = base_format(internal_format);
+  TextureImage stored = empty_image({image.width, image.height, image.depth}, internal_format, border);
+  const std::array<int, 3> cut{(image.width - stored.width) / 2, (image.height - stored.height) / 2,
+                               (image.depth - stored.depth) / 2};
+  stored.texel.reserve(texel_count(stored));
+  for (int z = 0; z < stored.depth; ++z)
+    for (int y = 0; y < stored.height; ++y)
+      for (int x = 0; x < stored.width; ++x)
+        stored.texel.push_back(
+            stored_texel(base, image, texel_at(image.width, image.height, x + cut[0], y + cut[1], z + cut[2])));
+  return stored;
+}
+
 /// Whether an image has the size of the level after `larger`.
 bool is_next_level(const TextureImage& image, const TextureImage& larger) {
   return image.width == std::max(1, larger.width / 2) && image.height == std::max(1, larger.height / 2) &&
@@ -345,37 +363,10 @@ Texel stored_texel(GLenum base, const Texel& t) {
   }
 }
 
-Texel texel_of_depth(double depth) {
-  const auto code = static_cast<std::uint32_t>(std::llround(held(depth) * kLargestDepth));
-  Texel texel{};
-  for (std::size_t c = 0; c < 4; ++c) texel[c] = static_cast<std::uint8_t>(code >> (24 - 8 * c) & 255);
-  return texel;
-}
 double depth_of_texel(const Texel& texel) {
   double code = 0;
   for (const std::uint8_t digit : texel) code = 256 * code + digit;
   return code / kLargestDepth;
-}
-
-std::optional<TextureImage> stored_image(const Image& image, GLint internal_format, int border) {
-  const GLenum base = base_format(internal_format);
-  if (base == GL_NONE) return std::nullopt;
-  const std::array<int, 3> cut{border_along(image.width, border), border_along(image.height, border),
-                               border_along(image.depth, border)};
-  TextureImage stored{image.width - 2 * cut[0],
-                      image.height - 2 * cut[1],
-                      image.depth - 2 * cut[2],
-                      border,
-                      kept_format(internal_format),
-                      base,
-                      {}};
-  stored.texel.reserve(texel_count(stored));
-  for (int z = 0; z < stored.depth; ++z)
-    for (int y = 0; y < stored.height; ++y)
-      for (int x = 0; x < stored.width; ++x)
-        stored.texel.push_back(
-            stored_texel(base, image, texel_at(image.width, image.height, x + cut[0], y + cut[1], z + cut[2])));
-  return stored;
 }
 
 bool is_complete(const TextureObject& texture) {
@@ -428,8 +419,7 @@ TextureObject* bound_texture(Context& context, GLenum target) {
   const auto* found = std::ranges::find(kTextureTargets, target);
   if (found != kTextureTargets.end())
     return &object_of(context, static_cast<std::size_t>(found - kTextureTargets.begin()));
-  context.fail(GL_INVALID_ENUM);
-  return nullptr;
+  return context.fail(GL_INVALID_ENUM), nullptr;
 }
 
 void tex_image(Context& context, int dimensions, GLenum target, GLint level, GLint internal_format, GLsizei width,
@@ -443,14 +433,11 @@ void tex_image(Context& context, int dimensions, GLenum target, GLint level, GLi
   if (image != nullptr && !go_together(context, image->format, base)) return;
   if (fit == SizeCheck::too_large) return store_image(context, *to, level, {});
   if (to->is_proxy || image == nullptr || image->empty()) {
-    const std::array<int, 3> cut{border_along(width, border), border_along(height, border),
-                                 border_along(depth, border)};
-    TextureImage blank{
-        width - 2 * cut[0], height - 2 * cut[1], depth - 2 * cut[2], border, kept_format(internal_format), base, {}};
+    TextureImage blank = empty_image({width, height, depth}, internal_format, border);
     if (!to->is_proxy) blank.texel.resize(texel_count(blank), stored_texel(base, std::array<float, 4>{0, 0, 0, 1}));
     return store_image(context, *to, level, std::move(blank));
   }
-  store_image(context, *to, level, *stored_image(*transferred(context, std::move(image)), internal_format, border));
+  store_image(context, *to, level, stored_image(*transferred(context, std::move(image)), internal_format, border));
 }
 
 void tex_sub_image(Context& context, int dimensions, GLenum target, GLint level, GLint x, GLint y, GLint z,
@@ -471,7 +458,7 @@ void copy_tex_image(Context& context, int dimensions, GLenum target, GLint level
   if (dimensions == 1) height = 1;
   if (check_size(context, *to, level, {width, height, 1}, border) != SizeCheck::fits || !takes_base(context, *to, base))
     return;
-  store_image(context, *to, level, *stored_image(*copied(context, x, y, width, height, base), format, border));
+  store_image(context, *to, level, stored_image(*copied(context, x, y, width, height, base), format, border));
 }
 
 void copy_tex_sub_image(Context& context, int dimensions, GLenum target, GLint level, GLint xoffset, GLint yoffset,
@@ -510,20 +497,13 @@ void prioritize_textures(Context& context,
 }
 
 void gen_textures(Context& context, GLsizei n, GLuint* names) {
-  if (n < 0) return context.fail(GL_INVALID_VALUE);
   const std::scoped_lock lock(context.shared->mutex);
-  auto& textures = context.shared->textures;
-  GLuint name = textures.empty() ? 0 : textures.rbegin()->first;
-  for (GLsizei i = 0; i < n; ++i) {
-    do ++name;
-    while (name == 0 || textures.contains(name));
-    textures[name] = std::make_shared<TextureObject>();
-    textures[name]->name = names[i] = name;
-  }
+  generate(context, context.shared->textures, n, names);
 }
 
 void delete_textures(Context& context, GLsizei n, const GLuint* names) {
   if (n < 0) return context.fail(GL_INVALID_VALUE);
+  ++context.revision;  // bound ones are unbound
   for (GLsizei i = 0; i < n; ++i) {
     if (names[i] == 0) continue;
     for (std::size_t unit = 0; unit < context.bound_textures.size(); ++unit)

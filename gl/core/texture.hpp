@@ -20,7 +20,6 @@ struct Context;
 [[nodiscard]] Texel texel_of(const std::array<float, 4>& color);
 
 /// Depth textures keep 32 bits in the four channels of a texel, the highest in the first.
-[[nodiscard]] Texel texel_of_depth(double depth);
 [[nodiscard]] double depth_of_texel(const Texel& texel);
 /// A colour as a texel of a base format (TextureImage).
 [[nodiscard]] Texel stored_texel(GLenum base, const Texel& color);
@@ -29,9 +28,6 @@ struct Context;
 
 /// Whether sampling finds all images that the filters ask for (OpenGL 1.5, 3.8.10).
 [[nodiscard]] bool is_complete(const TextureObject& texture);
-
-/// An image as an internal format keeps it, without its border. None: the format is none.
-[[nodiscard]] std::optional<TextureImage> stored_image(const Image& image, GLint internal_format, int border);
 
 /// The units whose texture is on and complete: bit by bit.
 [[nodiscard]] unsigned textured_units(const Context& context);

@@ -32,7 +32,13 @@ constexpr auto kSources = [] {
   return sources;
 }();
 
-std::optional<Place> texture_place(TextureObject& t, GLenum pname) {
+TextureUnit& active_unit(Context& context) {
+  return context.state.texture.unit[static_cast<std::size_t>(context.state.texture.active)];
+}
+
+}  // namespace
+
+std::optional<Place> texture_place(TextureParameters& t, GLenum pname) {
   switch (pname) {
     case GL_TEXTURE_MIN_FILTER: return Place{&t.min_filter, kMinFilters};
     case GL_TEXTURE_MAG_FILTER: return Place{&t.mag_filter, kMagFilters};
@@ -90,12 +96,6 @@ std::optional<Place> generation_place(TextureUnit& unit, GLenum coord, GLenum pn
     default: return std::nullopt;
   }
 }
-
-TextureUnit& active_unit(Context& context) {
-  return context.state.texture.unit[static_cast<std::size_t>(context.state.texture.active)];
-}
-
-}  // namespace
 
 void tex_parameter(Context& context, GLenum target, GLenum pname, Params params) {
   TextureObject* texture = bound_texture(context, target);

@@ -4,11 +4,13 @@
 #include <GL/glext.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <string_view>
 #include <vector>
 
 #include "gl/core/commands.hpp"
+#include "gl/core/entry_points.hpp"
 #include "tests/gl/textured_window.hpp"
 
 namespace halfplane::gl::embedded_test {
@@ -51,6 +53,32 @@ TEST_F(Embedded, WhatOpenGlEsDoesNotHaveIsRefused) {
             GLenum{GL_INVALID_ENUM});
   EXPECT_EQ(error_after([&] { array_pointer(context, Array::color, 4, GL_UNSIGNED_BYTE, 0, nullptr); }),
             GLenum{GL_NO_ERROR});
+}
+
+TEST_F(Embedded, VariantsWithVReadAsManyNumbersAsTheParameterHas) {
+  constexpr std::array<GLint, 4> kCrop{3, 5, 16, 8};
+  const EntryPoint& entry = entry_points().at("glTexParameteriv");
+  make_current(&context, context.drawable, context.drawable);
+  reinterpret_cast<void (*)(GLenum, GLenum, const GLint*)>(const_cast<void*>(entry.function))(
+      GL_TEXTURE_2D, kTextureCropRect, kCrop.data());
+  make_current(nullptr, nullptr, nullptr);
+  EXPECT_EQ(get_tex_parameter(context, GL_TEXTURE_2D, kTextureCropRect).value, (std::vector<double>{3, 5, 16, 8}));
+  for (const auto& [name, count] : {std::pair{GL_AMBIENT, 4U},
+                                    {GL_SPOT_DIRECTION, 3U},
+                                    {GL_SHININESS, 1U},
+                                    {GL_COLOR_INDEXES, 3U},
+                                    {GL_LIGHT_MODEL_AMBIENT, 4U},
+                                    {GL_FOG_COLOR, 4U},
+                                    {GL_POINT_DISTANCE_ATTENUATION, 3U},
+                                    {GL_TEXTURE_ENV_COLOR, 4U},
+                                    {GL_TEXTURE_BORDER_COLOR, 4U},
+                                    {GL_EYE_PLANE, 4U},
+                                    {GL_TEXTURE_WRAP_S, 1U},
+                                    {0, 1U}})
+    EXPECT_EQ(param_count(static_cast<GLenum>(name)), count) << name;
+  for (const GLenum name : {GL_FOG_MODE, GL_LIGHT_MODEL_TWO_SIDE, GL_TEXTURE_MIN_FILTER, GL_OPERAND2_ALPHA})
+    EXPECT_TRUE(is_unscaled(name)) << name;
+  for (const GLenum name : {GL_FOG_DENSITY, GL_AMBIENT, GL_RGB_SCALE}) EXPECT_FALSE(is_unscaled(name)) << name;
 }
 
 TEST_F(Embedded, MatricesAsBitsOfFloats) {
