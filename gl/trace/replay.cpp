@@ -135,11 +135,11 @@ class Replay {
   using Bytes = std::span<const std::byte>;
   [[nodiscard]] static double reach(const TraceCall& call, const Context& context);
   [[nodiscard]] std::optional<Bytes> memory_of(const Context& context, const ArrayPointer& array) const;
-  [[nodiscard]] bool arrays_hold(const Context& context, std::uint64_t index) const;
-  [[nodiscard]] std::optional<std::uint64_t> largest_index(const Context& context, GLsizei count, GLenum type,
-                                                           const TraceValue& indices) const;
-  [[nodiscard]] bool draw_arrays_is_safe(const Context& context, std::int64_t first, std::int64_t count) const;
-  bool multi_draw(const TraceCall& call, Context& context);
+  [[nodiscard]] bool arrays_hold(const Context& context, std::int64_t index) const;
+  // Of `call` or one of its several draws.
+  bool draw_arrays(const TraceCall& call, Context& context, std::int64_t first, std::int64_t count) const;
+  bool draw_elements(const TraceCall& call, Context& context, std::int64_t count, const TraceValue& indices) const;
+  bool multi_draw(const TraceCall& call, Context& context) const;
   bool map(const TraceCall& call, Context& context);
   void copy_to_map(const TraceCall& call);
 
@@ -245,21 +245,12 @@ bool Replay::carry_out(const TraceCall& call, Context& context) {
   const std::string_view name = core_name(call.function());
   if (name.starts_with("glMultiDraw")) return multi_draw(call, context);
   if (is_one_of(name, {"glMapBuffer", "glUnmapBuffer"})) return map(call, context);
+  const auto integer = [&](auto... names) { return call.argument(names...).integer; };
+  if (name == "glDrawArrays") return draw_arrays(call, context, integer("first"), integer("count"));
+  if (name.ends_with("Elements")) return draw_elements(call, context, integer("count"), call.argument("indices"));
   const auto entry = entry_points().find(call.function());
   if (entry == entry_points().end()) return false;
-
-  const bool is_pointer = name.ends_with("Pointer") || name == "glInterleavedArrays";
-  const bool is_elements = name.ends_with("Elements");
-  const auto integer = [&](auto... names) { return call.argument(names...).integer; };
-  if (is_elements) {
-    const auto largest = largest_index(context, static_cast<GLsizei>(integer("count")),
-                                       static_cast<GLenum>(integer("type")), call.argument("indices"));
-    if (!largest || !arrays_hold(context, *largest)) return false;
-  } else if (name == "glDrawArrays") {
-    if (!draw_arrays_is_safe(context, integer("first"), integer("count"))) return false;
-  } else if (name == "glArrayElement") {
-    if (!draw_arrays_is_safe(context, integer("i"), 1)) return false;
-  }
+  if (name == "glArrayElement" && !arrays_hold(context, integer("i"))) return false;
 
   const double bytes = reach(call, context);
   if (bytes > kFarthestReach) return false;
@@ -268,17 +259,17 @@ bool Replay::carry_out(const TraceCall& call, Context& context) {
     memory.clear();
     void* at = memory.emplace_back(static_cast<std::size_t>(bytes)).data();
     const auto size = static_cast<GLsizei>(integer("size"));
-    if (name == "glSelectBuffer") {
+    if (name == "glSelectBuffer")
       select_buffer(context, size, static_cast<GLuint*>(at));
-    } else {
+    else
       feedback_buffer(context, size, static_cast<GLenum>(integer("type")), static_cast<GLfloat*>(at));
-    }
     return true;
   }
-  const bool is_offset =
-      (is_pointer && context.client.array_buffer != 0) || (is_elements && context.client.element_buffer != 0);
+  const bool is_pointer = name.ends_with("Pointer") || name == "glInterleavedArrays";
   const bool is_optional = is_pointer || name.starts_with("glTexImage") || name == "glBufferData";
-  const Addresses addresses = is_offset ? Addresses::offsets : is_optional ? Addresses::null : Addresses::none;
+  const Addresses addresses = is_pointer && context.client.array_buffer != 0 ? Addresses::offsets
+                              : is_optional                                  ? Addresses::null
+                                                                             : Addresses::none;
   HeldMemory held;
   if (!call_entry(entry->second, call.arguments, static_cast<std::size_t>(bytes), addresses, held)) return false;
   if (is_pointer) kept_[{&context, std::string(name), context.client.active_texture}] = std::move(held);
@@ -325,63 +316,58 @@ std::optional<Replay::Bytes> Replay::memory_of(const Context& context, const Arr
   return std::nullopt;
 }
 
-bool Replay::arrays_hold(const Context& context, std::uint64_t index) const {
-  return std::ranges::all_of(context.client.array, [&](const ArrayPointer& array) {
-    if (!array.enabled) return true;
-    const std::uint64_t bytes = static_cast<std::uint64_t>(array.size) * array_type_bytes(array.type);
-    const std::uint64_t stride = array.stride != 0 ? static_cast<std::uint64_t>(array.stride) : bytes;
-    const auto memory = memory_of(context, array);
-    return memory && index * stride + bytes <= memory->size();
-  });
+bool Replay::arrays_hold(const Context& context, std::int64_t index) const {
+  return index >= 0 && std::ranges::all_of(context.client.array, [&](const ArrayPointer& array) {
+           if (!array.enabled) return true;
+           const std::uint64_t bytes = static_cast<std::uint64_t>(array.size) * array_type_bytes(array.type);
+           const std::uint64_t stride = array.stride != 0 ? static_cast<std::uint64_t>(array.stride) : bytes;
+           const auto memory = memory_of(context, array);
+           return memory && static_cast<std::uint64_t>(index) * stride + bytes <= memory->size();
+         });
 }
 
-bool Replay::draw_arrays_is_safe(const Context& context, std::int64_t first, std::int64_t count) const {
-  if (first < 0 || count < 0) return false;
-  return count == 0 || arrays_hold(context, static_cast<std::uint64_t>(first + count - 1));
+bool Replay::draw_arrays(const TraceCall& call, Context& context, std::int64_t first, std::int64_t count) const {
+  if (first < 0 || count < 0 || (count > 0 && !arrays_hold(context, first + count - 1))) return false;
+  gl::draw_arrays(context, static_cast<GLenum>(call.argument("mode").integer), static_cast<GLint>(first),
+                  static_cast<GLsizei>(count));
+  return true;
 }
 
-std::optional<std::uint64_t> Replay::largest_index(const Context& context, GLsizei count, GLenum type,
-                                                   const TraceValue& indices) const {
-  if (count < 0 || (type != GL_UNSIGNED_BYTE && type != GL_UNSIGNED_SHORT && type != GL_UNSIGNED_INT))
-    return std::nullopt;
-  ArrayPointer array;
-  array.buffer = context.client.element_buffer;
-  array.pointer = reinterpret_cast<const void*>(indices.integer);
+bool Replay::draw_elements(const TraceCall& call, Context& context, std::int64_t count,
+                           const TraceValue& indices) const {
+  const auto argument = [&](const char* name) { return static_cast<GLuint>(call.argument(name).integer); };
+  const GLenum type = argument("type");
+  if (count < 0 || (type != GL_UNSIGNED_BYTE && type != GL_UNSIGNED_SHORT && type != GL_UNSIGNED_INT)) return false;
+  ArrayPointer array{.pointer = reinterpret_cast<const void*>(indices.integer),
+                     .buffer = context.client.element_buffer};
   std::optional<Bytes> bytes = std::as_bytes(std::span(indices.bytes));
-  if (array.buffer != 0) bytes = memory_of(context, array);
+  if (array.buffer != 0)
+    bytes = memory_of(context, array);
+  else
+    array.pointer = indices.bytes.data();
   const std::uint64_t size = array_type_bytes(type);
-  if (!bytes || bytes->size() < static_cast<std::uint64_t>(count) * size) return std::nullopt;
-  std::uint64_t largest = 0;
+  if (!bytes || bytes->size() < static_cast<std::uint64_t>(count) * size) return false;
+  std::uint32_t largest = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     std::uint32_t index = 0;  // little-endian
     std::memcpy(&index, bytes->data() + i * size, size);
-    largest = std::max<std::uint64_t>(largest, index);
+    largest = std::max(largest, index);
   }
-  return largest;
+  if (!arrays_hold(context, largest)) return false;
+  draw_range_elements(context, argument("mode"), argument("start"), argument("end"), static_cast<GLsizei>(count), type,
+                      array.pointer);
+  return true;
 }
 
-bool Replay::multi_draw(const TraceCall& call, Context& context) {
+bool Replay::multi_draw(const TraceCall& call, Context& context) const {
   // Equal to as many single draws (OpenGL 1.5, 2.8).
-  static const auto draw_arrays_signature =
-      std::make_shared<TraceSignature>(TraceSignature{"glDrawArrays", {"mode", "first", "count"}});
-  static const auto draw_elements_signature =
-      std::make_shared<TraceSignature>(TraceSignature{"glDrawElements", {"mode", "count", "type", "indices"}});
   const bool is_elements = core_name(call.function()) == "glMultiDrawElements";
-  const TraceValue& counts = call.argument("count");
-  const TraceValue& places = call.argument(is_elements ? "indices" : "first");
-  bool is_done = counts.items.size() == places.items.size();
-  for (std::size_t i = 0; is_done && i < counts.items.size(); ++i) {
-    TraceCall one;
-    const TraceValue mode = call.argument("mode"), count = counts.items[i], place = places.items[i];
-    if (is_elements) {
-      one.signature = draw_elements_signature;
-      one.arguments = {mode, count, call.argument("type"), place};
-    } else {
-      one.signature = draw_arrays_signature;
-      one.arguments = {mode, place, count};
-    }
-    is_done = carry_out(one, context);
-  }
+  const std::vector<TraceValue>& counts = call.argument("count").items;
+  const std::vector<TraceValue>& places = call.argument(is_elements ? "indices" : "first").items;
+  bool is_done = counts.size() == places.size();
+  for (std::size_t i = 0; is_done && i < counts.size(); ++i)
+    is_done = is_elements ? draw_elements(call, context, counts[i].integer, places[i])
+                          : draw_arrays(call, context, places[i].integer, counts[i].integer);
   return is_done;
 }
 

@@ -143,11 +143,10 @@ T TraceFile::raw() {
 void TraceFile::skip_names(bool values_are_typed) {
   for (std::uint64_t left = count(); left > 0; --left) {
     text();
-    if (values_are_typed) {
+    if (values_are_typed)
       value(kDeepestValue - 1);
-    } else {
+    else
       number();
-    }
   }
 }
 
