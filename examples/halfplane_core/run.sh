@@ -18,9 +18,9 @@ cc -std=c99 -O1 "-DHALFPLANE_CONFIG_FILE=\"$folder/own_config.h\"" -I . "-I$root
 
 case $simulator in
   verilator)
-    if command -v ccache >/dev/null; then export OBJCACHE=ccache; fi
+    if command -v ccache >/dev/null; then export OBJCACHE="${OBJCACHE:-ccache}"; fi
     core=$(ls "$root"/core/*.sv | grep -v -e _pkg -e _checker)
-    verilator --binary --timing -Wno-fatal -Wno-lint -Wno-style -MAKEFLAGS "OPT_FAST=-O1 OPT_GLOBAL=-O0" --top-module testbench \
+    verilator --binary --timing -Wno-fatal -Wno-lint -Wno-style -MAKEFLAGS "VM_PARALLEL_BUILDS=0 OPT_FAST=-O1 OPT_GLOBAL=-O0" --top-module testbench \
       --Mdir "$folder/obj" "-I$root/rtl_ref/lib" "-I$root/rtl_ref/stages" "$folder/raster_pkg.sv" "$root/core/core_pkg.sv" $core \
       "$root/rtl_ref/raster_top.sv" "$here/testbench.sv" -o testbench >"$folder/verilator.log" 2>&1 || { cat "$folder/verilator.log" >&2; exit 3; }
     "$folder/obj/testbench" "+words=$folder/words.hex" "+picture=$folder/picture.ppm" ;;

@@ -8,7 +8,7 @@ library=$(cd "$(dirname "$2")" && pwd)/$(basename "$2") # it is linked from anot
 here=$(cd "$(dirname "$0")" && pwd)
 rtl=$here/../../rtl_ref
 mkdir -p "$folder"
-if command -v ccache >/dev/null; then export OBJCACHE=ccache; fi
+if command -v ccache >/dev/null; then export OBJCACHE="${OBJCACHE:-ccache}"; fi
 "$halfplane" config --config "$config" --sv >"$folder/raster_pkg.sv"
 "$halfplane" config --config "$config" --dpi >"$folder/halfplane_dpi.sv"
 verilator --binary --timing -Wno-fatal -Wno-lint -Wno-style -MAKEFLAGS "OPT_FAST=-O0 OPT_GLOBAL=-O0" --top-module testbench --Mdir "$folder/obj" \

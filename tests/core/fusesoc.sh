@@ -8,7 +8,7 @@ rm -rf "$folder"
 mkdir -p "$folder" && touch "$folder/FUSESOC_IGNORE"  # FuseSoC looks for cores in all of the tree
 cd "$folder"
 export HALFPLANE PATH="$root/build/python/bin:$PATH"
-if command -v ccache >/dev/null; then export OBJCACHE=ccache; fi
+if command -v ccache >/dev/null; then export OBJCACHE="${OBJCACHE:-ccache}"; fi
 cat >fusesoc.conf <<END
 [library.halfplane]
 location = $root
