@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "../tier.hpp"
 #include "model/capture/capture.hpp"
 #include "sim/config_file.hpp"
 #include "sim/scene/random.hpp"
@@ -64,8 +65,8 @@ Scene small_scene(const Config& config) {
 }
 
 /// The same, and random ones.
-SceneSource scenes_of(const Config& config) {
-  SceneSource random = random_scenes(config, kSeed, 60);
+SceneSource scenes_of(const Config& config, std::uint64_t primitives = 60) {
+  SceneSource random = random_scenes(config, kSeed, primitives);
   return [random, small = std::optional(small_scene(config))]() mutable -> std::optional<Scene> {
     if (small) return std::exchange(small, std::nullopt);
     return random();
@@ -120,7 +121,7 @@ TEST(Vectors, WhatAStageGaveIsJudgedEqualWhateverTheFile) {
     for (const JudgedStage& stage : judged_stages()) {
       if (!is_of(stage, config)) continue;
       SCOPED_TRACE(label(config) + " " + std::string(info(stage.stage).name));
-      const StagePackets packets = record_stage(stage, config, scenes_of(config));
+      const StagePackets packets = record_stage(stage, config, scenes_of(config, test::cases(20, 60)));
       next = static_cast<Format>((static_cast<int>(next) + 1) % 3);
       for (const Format format : {Format::jsonl, Format::csv, Format::hex}) {
         if (config.preset != "tiny" && format != next) continue;  // each in its turn: files of other presets are long
