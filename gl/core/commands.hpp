@@ -169,8 +169,7 @@ void bitmap(Context&, const std::shared_ptr<const Bitmap>& bitmap, double x_orig
             double y_move);
 void copy_pixels(Context&, GLint x, GLint y, GLsizei width, GLsizei height, GLenum type);
 void read_pixels(Context&, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels);
-void draw_tex(Context&, double x, double y, double z, double width,
-              double height);  // GL_OES_draw_texture (draw_tex.cpp)
+void draw_tex(Context&, double x, double y, double z, double width, double height);  // embedded.cpp
 void pixel_zoom(Context&, double x, double y);
 void pixel_transfer(Context&, GLenum pname, double value);
 void pixel_map(Context&, GLenum map, const std::shared_ptr<const std::vector<float>>& values);

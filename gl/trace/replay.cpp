@@ -16,7 +16,7 @@
 
 #include "../core/arrays.hpp"
 #include "../core/commands.hpp"
-#include "calls.hpp"
+#include "../core/entry_points.hpp"
 #include "trace_file.hpp"
 
 namespace halfplane::gl {
@@ -38,6 +38,65 @@ std::string_view core_name(std::string_view name) {
     if (name.ends_with(suffix)) return name.substr(0, name.size() - suffix.size());
   return name;
 }
+
+// --- recorded calls as calls of entry points
+
+/// Arguments for a pointer whose memory the trace lacks.
+enum class Addresses { none, null, offsets };
+
+/// Everything that a call's arguments point at. To outlive them.
+using HeldMemory = std::list<std::vector<std::byte>>;
+
+/// Writes a number as an entry point takes it, or reads it from memory; bytes lie from the lowest on.
+void put(const TraceValue& value, const Parameter& type, void* to) {
+  const auto single = static_cast<float>(value.real);
+  const void* const from = !type.is_real                 ? static_cast<const void*>(&value.integer)
+                           : type.bytes == sizeof single ? static_cast<const void*>(&single)
+                                                         : &value.real;
+  std::memcpy(to, from, type.bytes);
+}
+
+/// The memory that a pointer's argument holds.
+std::vector<std::byte> memory_of(const TraceValue& value, const Parameter& type, std::size_t reach) {
+  const bool is_array = value.kind == TraceValue::Kind::array;
+  const std::size_t size = is_array ? value.items.size() * type.bytes : value.bytes.size();
+  std::vector<std::byte> memory(std::max(size + 1, reach));  // a string ends in 0
+  std::byte* to = memory.data();
+  if (!is_array) std::memcpy(to, value.bytes.data(), size);
+  for (const TraceValue& item : value.items) {
+    put(item, type, to);
+    to += type.bytes;
+  }
+  return memory;
+}
+
+/// Calls `entry` with recorded arguments, whose memory is put into `held`, followed by zeros up to `reach` bytes: those that
+/// the command may read however short the recorded memory is. False: it takes other arguments, or a pointer that it must not
+/// get. Not for commands that write to the program's memory.
+bool call_entry(const EntryPoint& entry, const std::vector<TraceValue>& values, std::size_t reach, Addresses addresses,
+                HeldMemory& held) {
+  std::array<std::uint64_t, 16> arguments{};
+  if (values.size() != entry.parameters.size() || values.size() > arguments.size()) return false;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const TraceValue& value = values[i];
+    const Parameter& type = entry.parameters[i];
+    const bool has_memory =
+        value.kind == TraceValue::Kind::bytes || (value.kind == TraceValue::Kind::array && type.bytes != 0);
+    if (!type.is_pointer) {
+      put(value, type, &arguments[i]);
+    } else if (has_memory) {
+      arguments[i] = reinterpret_cast<std::uintptr_t>(held.emplace_back(memory_of(value, type, reach)).data());
+    } else {
+      const bool is_null = value.kind == TraceValue::Kind::null;
+      if (addresses == Addresses::none || (!is_null && addresses != Addresses::offsets)) return false;
+      arguments[i] = static_cast<std::uint64_t>(value.integer);
+    }
+  }
+  entry.call(entry.function, arguments.data());
+  return true;
+}
+
+// --- surfaces, contexts, frames
 
 /// Information in GLX and EGL calls that a replay needs.
 struct Binding {
