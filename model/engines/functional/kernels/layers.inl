@@ -28,9 +28,14 @@ namespace {
           f.dst_alpha == BlendFactor::one_minus_src_alpha && ops.equation[1] == BlendEquation::add);
 }
 
-/// The same, without other operations.
+/// Whether all channels are written. Comparing the arrays is a call for each tile.
+[[nodiscard]] inline bool writes_all_channels(const ColorOps& ops) {
+  return ops.writes[0] && ops.writes[1] && ops.writes[2] && ops.writes[3];
+}
+
+/// has_over_factors(), without other operations.
 [[nodiscard]] inline bool is_over(const ColorOps& ops, ColorFormat format) {
-  return has_over_factors(ops, format) && !ops.dithers && ops.logic == LogicOp::copy && ops.writes == ColorOps{}.writes;
+  return has_over_factors(ops, format) && !ops.dithers && ops.logic == LogicOp::copy && writes_all_channels(ops);
 }
 
 /// The bits that replace alpha as its own first factor, where that is one.

@@ -221,7 +221,7 @@ HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pi
              is_over = has_over_factors(ops, format);
   const std::int32_t own_factor = own_factor_bits(ops);
   const bool writes_some = bin.ops->state.color_write,  // false only without Skip::masked_draws
-      has_logic = ops.logic != LogicOp::copy, writes_all = writes_some && !has_logic && ops.writes == ColorOps{}.writes;
+      has_logic = ops.logic != LogicOp::copy, writes_all = writes_some && !has_logic && writes_all_channels(ops);
   const auto written = writes_some ? static_cast<std::int32_t>(written_bits(ops, format)) : 0;
   const Packing packing = bin.packing;
   const LogicLanes logic(ops.logic);
@@ -353,7 +353,7 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
   };
   // A passing pixel replaces the stored values: its colour is deferred like any other surface's, and computed if
   // visible. bin.state.color_write also says that alpha is read.
-  if (t.surface != 0 && bin.samples == 1 && bin.skip.attributes && ops.state.color_write &&
+  if (t.surface != 0 && bin.samples == 1 && bin.skip.attributes && ops.state.color_write && !ops.color.blends() &&
       undithered(ops.color, 1).is_plain()) {
     if (alpha == Outcome::some_pass) {
       const DrawnSurface& surface = drawn_surface(bin, static_cast<std::size_t>(t.surface));
