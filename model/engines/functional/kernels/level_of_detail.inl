@@ -15,7 +15,7 @@ HALFPLANE_INLINE W16 octagon_length(const W16& a, const W16& b) {
 /// log2_code(), of float_bits().
 HALFPLANE_INLINE I16 log2_code(const I16& bits) {
   const I16 log = (bits >> (kFloatFraction - kLodFraction)) - (kFloatBias << kLodFraction), part = log & 255;
-  return log + ((part * (256 - part) * 95) >> 16);
+  return log + (multiply_add_pairs(multiply_add_pairs(part, 256 - part), I16(95)) >> 16);
 }
 
 /// For lengths that may take all 32 bits.

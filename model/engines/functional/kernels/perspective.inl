@@ -9,7 +9,16 @@ namespace {
 
 /// Bits of numbers from 0 on as binary32: the 21 highest are unchanged, because the bit below them is cleared and so no
 /// rounding carries past it.
-HALFPLANE_INLINE I16 float_bits(const I16& value) { return as<I16>(convert<float>(value & ~(value >> 21))); }
+HALFPLANE_INLINE I16 float_bits(const I16& value) {
+#if HALFPLANE_ISA == 512
+  I16 bits;
+  bits.part[0] =
+      (I16::Register)_mm512_cvt_roundepi32_ps((__m512i)value.part[0], _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
+  return bits;
+#else
+  return as<I16>(convert<float>(value & ~(value >> 21)));
+#endif
+}
 
 /// 1 / Q of pixels: PixelReciprocal.
 struct ReciprocalsOfQ {
