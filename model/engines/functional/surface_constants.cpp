@@ -104,7 +104,7 @@ LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, Tex
   lanes.texels = texels.blocks.data();
   lanes.quads = texels.quads(lanes.wrap);
   lanes.alpha_quads = lanes.has_border ? nullptr : texels.alpha_quads(lanes.wrap);
-  lanes.pitch = std::max(lanes.bits[0], TexelBlocks::kShift);
+  lanes.pitch = std::max(lanes.bits[1], TexelBlocks::kShift);
   lanes.first = texels.first;
   lanes.up = kTexelFraction - fraction_bits;
   lanes.min = sampler.min;
@@ -238,6 +238,8 @@ void SurfaceConstants::set_texture(const StageSurface& from, const Widths& width
   has_constant_w = has_one_w();
   is_upright = has_constant_w && sampling_of(texture) != Sampling::nearest && coordinate.attribute[0].p.step_y == 0 &&
                coordinate.attribute[1].p.step_x == 0;
+  repeats_places = is_upright && coordinate.q.tile_x == 0 && coordinate.q.tile_y == 0 &&
+                   coordinate.attribute[0].p.tile_y == 0 && coordinate.attribute[1].p.tile_x == 0;
 }
 
 bool SurfaceConstants::has_one_w() const {

@@ -93,7 +93,7 @@ struct LaneTexture {
   std::array<std::int32_t, TexelBlocks::kLevels> first{};
   std::array<int, 2> bits{};                ///< log2 of its sides
   std::array<std::int32_t, 2> last{};       ///< last texel along them
-  int pitch = 0;                            ///< from a row's number, without the two lowest bits, to its place
+  int pitch = 0;                            ///< from a column's number, without the two lowest bits, to its place
   std::array<TextureWrap, 2> wrap{};        ///< clamp where there is a border
   std::array<std::int32_t, 2> reference{};  ///< u_ref, 2^-8 texels
   int up = 0;                               ///< from a coordinate to 2^-8 texels
@@ -191,6 +191,7 @@ struct SurfaceConstants {
   bool has_constant_color = false;  ///< color_low is its colour
   bool has_constant_w = false;      ///< textured, with one w: the level of detail is constant as well
   bool is_upright = false;          ///< upright.inl: one w, u along columns, v along rows, a linear filter
+  bool repeats_places = false;      ///< upright, and tiles of one column have the same u, tiles of one row the same v
   bool has_fog = false;
   LaneDivision division;
   LaneOverW of_coordinate, of_color;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace halfplane {
 namespace {
@@ -38,6 +39,37 @@ void with_decoder(const Texture& texture, const Use& use) {
   }
 }
 
+/// Footprints of four texels of a row, R lowest: `right` has those to the right of `left`, `lower...` the next row.
+void make_quads(const std::uint32_t* left, const std::uint32_t* right, const std::uint32_t* lower_left,
+                const std::uint32_t* lower_right, TexelBlocks::Quad* to) {
+  using Words __attribute__((vector_size(16))) = std::uint32_t;
+  struct Row {
+    Words even, odd;  // channels of the left and the right texel
+
+    Row(const std::uint32_t* from, const std::uint32_t* next) {
+      constexpr std::uint32_t kEven = 0xff00ffU;
+      Words l, r;
+      std::memcpy(&l, from, sizeof l);
+      std::memcpy(&r, next, sizeof r);
+      even = (l & kEven) | (r & kEven) << 8;
+      odd = (l >> 8 & kEven) | (r & ~kEven);
+    }
+  };
+  const auto low = [](const Words& a, const Words& b) { return ((a & 0xffffU) | b << 16) ^ TexelBlocks::kCentre; };
+  const auto high = [](const Words& a, const Words& b) { return (a >> 16 | (b & ~0xffffU)) ^ TexelBlocks::kCentre; };
+  const Row above(left, right), below(lower_left, lower_right);
+  const Words red = low(above.even, below.even), green = low(above.odd, below.odd), blue = high(above.even, below.even),
+              alpha = high(above.odd, below.odd);
+  const auto store = [](const Words& rg, const Words& ba, TexelBlocks::Quad* two) {
+    const Words first = __builtin_shufflevector(rg, ba, 0, 1, 4, 5),
+                second = __builtin_shufflevector(rg, ba, 2, 3, 6, 7);
+    std::memcpy(two, &first, sizeof first);
+    std::memcpy(two + 1, &second, sizeof second);
+  };
+  store(__builtin_shufflevector(red, green, 0, 4, 1, 5), __builtin_shufflevector(blue, alpha, 0, 4, 1, 5), to);
+  store(__builtin_shufflevector(red, green, 2, 6, 3, 7), __builtin_shufflevector(blue, alpha, 2, 6, 3, 7), to + 2);
+}
+
 }  // namespace
 
 TexelBlocks::TexelBlocks(const Texture& texture) {
@@ -65,7 +97,7 @@ TexelBlocks::TexelBlocks(const Texture& texture) {
 }
 
 std::size_t TexelBlocks::place_of(std::size_t level, int x, int y) const {
-  const int block = (y >> kShift) * blocks_along(size_[level].width) + (x >> kShift);
+  const int block = (x >> kShift) * blocks_along(size_[level].height) + (y >> kShift);
   return static_cast<std::size_t>(first[level] + block * kTexels + (y & (kSize - 1)) * kSize + (x & (kSize - 1)));
 }
 
@@ -81,10 +113,15 @@ void TexelBlocks::add_quads(const std::array<TextureWrap, 2>& wrap) {
         // The texels of a block's row, of the row below, and the texels next to their ends.
         const int count = std::min(kSize, width - x), right = next(x + count - 1, width, wrap[0]);
         const std::uint32_t *const upper = row_of(n, x, y), *const lower = row_of(n, x, below);
-        Quad* const quad = quads.data() + place_of(n, x, y);
-        for (int i = 0; i + 1 < count; ++i) quad[i] = {upper[i], upper[i + 1], lower[i], lower[i + 1]};
-        quad[count - 1] = {upper[count - 1], texel(place_of(n, right, y)), lower[count - 1],
-                           texel(place_of(n, right, below))};
+        std::array<std::uint32_t, kSize> next_upper{}, next_lower{};
+        for (int i = 0; i + 1 < count; ++i) {
+          next_upper[static_cast<std::size_t>(i)] = upper[i + 1];
+          next_lower[static_cast<std::size_t>(i)] = lower[i + 1];
+        }
+        const auto end = static_cast<std::size_t>(count - 1);
+        next_upper[end] = texel(place_of(n, right, y));
+        next_lower[end] = texel(place_of(n, right, below));
+        make_quads(upper, next_upper.data(), lower, next_lower.data(), quads.data() + place_of(n, x, y));
       }
     }
   }
@@ -104,8 +141,7 @@ void TexelBlocks::add_alpha_quads() {
   for (std::size_t i = 0; i < quads_.size(); ++i) {
     if (alpha_quads_[i].size() == quads_[i].size()) continue;
     alpha_quads_[i].clear();
-    for (const Quad& quad : quads_[i])
-      alpha_quads_[i].push_back(quad[0] >> 24 | quad[1] >> 24 << 8 | quad[2] >> 24 << 16 | quad[3] >> 24 << 24);
+    for (const Quad& quad : quads_[i]) alpha_quads_[i].push_back(quad[3]);
   }
 }
 

@@ -24,7 +24,10 @@ class TexelBlocks {
   struct alignas(64) Block {
     std::array<std::uint32_t, kTexels> texel{};  ///< row after row, R lowest
   };
+  /// A footprint by channel, R first: from the lowest byte on its left and right texel, and those of the row below; each
+  /// less 128, in two's complement.
   using Quad = std::array<std::uint32_t, 4>;
+  static constexpr std::uint32_t kCentre = 0x80808080U;  ///< of a quad's bytes
 
   explicit TexelBlocks(const Texture& texture);
 
@@ -56,11 +59,11 @@ class TexelBlocks {
   void add_alpha_ranges();
   /// Makes separate alphas of existing footprints.
   void add_alpha_quads();
-  /// The four alphas of a footprint in a word, indexed like `blocks`; null if there are none.
+  /// The last words of the footprints, indexed like `blocks`; null if there are none.
   [[nodiscard]] const std::uint32_t* alpha_quads(const std::array<TextureWrap, 2>& wrap) const;
   [[nodiscard]] const AlphaRanges* alpha_ranges() const { return alpha_ranges_ ? &*alpha_ranges_ : nullptr; }
 
-  std::vector<Block> blocks;                  ///< level after level, row of blocks after row
+  std::vector<Block> blocks;                  ///< level after level, column of blocks after column
   std::array<std::int32_t, kLevels> first{};  ///< first texel of each level
   bool is_opaque = true;                      ///< the alpha of all texels is 255
 

@@ -112,6 +112,17 @@ struct DrawnSurface {
   BinTriangle colors;                   ///< affine ones, if needed
   std::unique_ptr<StageSurface> stage;  ///< where lanes lack a feature of the surface
   Packing packing;
+  std::uint32_t number = 0;  ///< of all that were ever set up on a thread
+};
+
+/// Coordinates of an upright image at the columns and rows of a bin's tiles: upright.inl.
+struct UprightMemory {
+  std::uint32_t image = 0;  ///< DrawnSurface::number
+  std::uint32_t known = 0;  ///< a bit for each column of tiles, then for each row
+  alignas(64) std::array<std::array<std::int32_t, kBlockPixels>, 2 * kBinTiles> at;
+
+  static std::size_t column_of(int tile) { return static_cast<std::size_t>(tile % kBinTiles); }
+  static std::size_t row_of(int tile) { return static_cast<std::size_t>(kBinTiles + tile / kBinTiles); }
 };
 
 /// A visible textured primitive, set up when its first pixel is shaded.
@@ -179,6 +190,8 @@ struct BinMemory {
   alignas(64) std::array<std::uint16_t, kBinPixels> surface;  ///< into `seen`, 0: the colour is in memory
   std::array<SeenSurface, kSurfaces> seen;                    ///< from 1 on
   std::vector<DrawnSurface> drawn;
+  std::uint32_t drawn_before = 0;  ///< the last DrawnSurface::number
+  UprightMemory upright;
   // Pending pieces, by group, from 1 on; the pixel of a piece stores kFirstPiece, plus 16 times the group's number, plus
   // the piece's number in its group.
   static constexpr std::size_t kFirstPiece = kSurfaces, kGroups = kSurfaces / 16;

@@ -38,6 +38,7 @@ inline const DrawnSurface& drawn_surface(Bin& bin, std::size_t number) {
   const auto& texture = seen.slice->context->state.texture;
   DrawnSurface& drawn = memory.drawn.emplace_back(stage, frame, texture ? &frame.prepared.textures[*texture] : nullptr,
                                                   bin.packing_of(seen.slice->context->fragment_ops));
+  drawn.number = ++memory.drawn_before;
   if (!drawn.constants.are_in_lanes)
     drawn.stage = std::make_unique<StageSurface>(frame, *seen.slice, *seen.record, seen.place, true);
   else if ((drawn.constants.has_color || drawn.constants.light) && !drawn.constants.is_color_over_w &&

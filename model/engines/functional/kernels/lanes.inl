@@ -362,6 +362,10 @@ HALFPLANE_LEAF I16 joined_halves(const I16& low, const I16& high) {
   for (int i = 0; i < 2; ++i)
     r.part[i] = (I16::Register)_mm256_blend_epi16((__m256i)low.part[i], (__m256i)high.part[i], 0xaa);
   return r;
+#elif HALFPLANE_ISA == 512
+  I16 r;
+  r.part[0] = (I16::Register)_mm512_mask_blend_epi16(0xaaaaaaaaU, (__m512i)low.part[0], (__m512i)high.part[0]);
+  return r;
 #else
   return (low & 0xffff) | (high & static_cast<std::int32_t>(0xffff0000U));
 #endif
@@ -405,6 +409,21 @@ HALFPLANE_LEAF I16 multiply_add_pairs(const I16& a, const I16& b) {
   r = (a << 16 >> 16) * (b << 16 >> 16) + (a >> 16) * (b >> 16);
 #endif
   return r;
+}
+
+/// a.low b.low + a.high b.high of pairs of bytes, without sign in `a`, with it in `b`; the sum has 16 bits.
+HALFPLANE_LEAF S32 multiply_add_bytes(const S32& a, const S32& b) {
+#if HALFPLANE_ISA == 512
+  S32 r;
+  r.part[0] = (S32::Register)_mm512_maddubs_epi16((__m512i)a.part[0], (__m512i)b.part[0]);
+  return r;
+#elif HALFPLANE_ISA == 256
+  S32 r;
+  for (int i = 0; i < 2; ++i) r.part[i] = (S32::Register)_mm256_maddubs_epi16((__m256i)a.part[i], (__m256i)b.part[i]);
+  return r;
+#else
+  return (a & 255) * (b << 8 >> 8) + shift_right_logical(a, 8) * (b >> 8);
+#endif
 }
 
 }  // namespace

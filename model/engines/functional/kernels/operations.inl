@@ -163,17 +163,17 @@ HALFPLANE_NOINLINE std::uint64_t test_linear_alpha(const Bin& bin, const DrawnSu
   const LaneTexture& texture = of.texture;
   const SurfaceRamps<Sampling::linear> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles, of.has_color);
   alignas(64) std::array<std::uint32_t, kTilePixels> quads;
-  CoordinateLanes from_middle[4];
+  CoordinateLanes at[4];
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    CoordinateLanes at;
-    (void)ramps.find_coordinates(of, block, at);
-    from_middle[block].u = at.u - 128;
-    from_middle[block].v = at.v - 128;
-    const Places places(footprint_places(texture, from_middle[block], BaseLevel(texture)));
+    (void)ramps.find_coordinates(of, block, at[block]);
+    const CoordinateLanes held = held_for_quads(texture, from_middle_of(at[block], BaseLevel(texture)));
+    at[block].u = held.u;
+    at[block].v = held.v;
+    const Places places(footprint_places(texture, held, BaseLevel(texture)));
     fetch_texels(texture.alpha_quads, places.place.data(), quads.data() + block * kBlockPixels);
   });
   return test_alphas(bin, pixels, [&](auto block) HALFPLANE_LAMBDA {
-    const I16 texel = linear_alpha(texture, from_middle[block], I16::load(quads.data() + block * kBlockPixels));
+    const I16 texel = linear_alpha(at[block], I16::load(quads.data() + block * kBlockPixels));
     if (!of.has_color) return texel;
     const I16 own = shift_right_logical(ramps.own(bin, surface, block).green_alpha, 16);
     return as<I16>(divide_by_255(as<S32>(own) * as<S32>(texel)));
@@ -249,30 +249,44 @@ HALFPLANE_NOINLINE Alphas texture_alphas(Bin& bin, const BinTriangle& t, int til
   constexpr std::uint64_t kCorners =
       1 | std::uint64_t{1} << (kBlockPixels + 3) | std::uint64_t{1} << (2 * kBlockPixels + 12) | std::uint64_t{1} << 63;
   if ((pixels & kCorners) != kCorners || bin.samples != 1) return {};
-  const SurfaceConstants& of = drawn_surface(bin, static_cast<std::size_t>(t.surface)).constants;
+  const DrawnSurface& surface = drawn_surface(bin, static_cast<std::size_t>(t.surface));
+  const SurfaceConstants& of = surface.constants;
   const LaneTexture& texture = of.texture;
   if (!of.are_in_lanes || !of.has_texture || of.light || texture.alpha_ranges == nullptr) return {};
   const Sampling sampling = sampling_of(texture);
   if (sampling == Sampling::any) return {};
-  const int tile_x = (bin.first_x >> kTileShift) + tile % kBinTiles,
-            tile_y = (bin.first_y >> kTileShift) + tile / kBinTiles;
-  // The corners, repeated.
-  const I16 column = I16::of([](int i) { return (i & 1) != 0 ? kTileSize / 2 - 1 : -kTileSize / 2; }),
-            row = I16::of([](int i) { return (i & 2) != 0 ? kTileSize / 2 - 1 : -kTileSize / 2; });
-  const auto at_corners = [&](const LanePlane& plane) HALFPLANE_LAMBDA {
-    return column * plane.step_x + row * plane.step_y + plane.anchor(tile_x, tile_y);
-  };
-  const ReciprocalsOfQ q(at_corners(of.coordinate.q), of.division);
   std::array<std::int32_t, 2> low, high;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const LaneAttribute& attribute = of.coordinate.attribute[axis];
-    const I16 u = over_q(at_corners(attribute.p), q, attribute, of.of_coordinate);
-    alignas(64) std::array<std::int32_t, kBlockPixels> corner;
-    on_axis(texture, axis, u, texture.reference[axis]).store(corner.data());
-    const auto [least, most] = std::minmax({corner[0], corner[1], corner[2], corner[3]});
+  const auto reach = [&](std::size_t axis, std::int32_t least, std::int32_t most) HALFPLANE_LAMBDA {
     const std::int32_t half = sampling == Sampling::linear ? 1 << (kTexelFraction - 1) : 0;  // to the texels around
     low[axis] = (least - texture.margin[axis] - half) >> kTexelFraction;
     high[axis] = (most + texture.margin[axis] + half) >> kTexelFraction;
+  };
+  if (of.is_upright) {
+    const UprightMemory& places = upright_places(bin, surface, tile);
+    const auto along = [&](std::size_t axis, std::size_t place) HALFPLANE_LAMBDA {
+      const std::int32_t first = places.at[place][0], last = places.at[place][kTileSize - 1];
+      reach(axis, std::min(first, last), std::max(first, last));
+    };
+    along(0, UprightMemory::column_of(tile));
+    along(1, UprightMemory::row_of(tile));
+  } else {
+    const int tile_x = (bin.first_x >> kTileShift) + tile % kBinTiles,
+              tile_y = (bin.first_y >> kTileShift) + tile / kBinTiles;
+    // The corners, repeated.
+    const I16 column = I16::of([](int i) { return (i & 1) != 0 ? kTileSize / 2 - 1 : -kTileSize / 2; }),
+              row = I16::of([](int i) { return (i & 2) != 0 ? kTileSize / 2 - 1 : -kTileSize / 2; });
+    const auto at_corners = [&](const LanePlane& plane) HALFPLANE_LAMBDA {
+      return column * plane.step_x + row * plane.step_y + plane.anchor(tile_x, tile_y);
+    };
+    const ReciprocalsOfQ q(at_corners(of.coordinate.q), of.division);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const LaneAttribute& attribute = of.coordinate.attribute[axis];
+      const I16 u = over_q(at_corners(attribute.p), q, attribute, of.of_coordinate);
+      alignas(64) std::array<std::int32_t, kBlockPixels> corner;
+      on_axis(texture, axis, u, texture.reference[axis]).store(corner.data());
+      const auto [least, most] = std::minmax({corner[0], corner[1], corner[2], corner[3]});
+      reach(axis, least, most);
+    }
   }
   const TexelBlocks::AlphaRanges::Range texel = texture.alpha_ranges->range(low, high, texture.wrap);
   const auto result = [&](std::uint32_t own, std::uint32_t of_texel) HALFPLANE_LAMBDA -> std::uint32_t {

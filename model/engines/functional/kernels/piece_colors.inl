@@ -206,12 +206,7 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
       fetch_texels(texture.texels, of_block, of_block);
     });
   } else if constexpr (kSampling != Sampling::none) {
-    for_each_block([&](auto block) HALFPLANE_LAMBDA {
-      if (block_bits(pixels, block) == 0) return;
-      const ColorPairs texels = texels_at<kSampling>(texture, at[block], lod[block]);
-      red_blue[block] = texels.red_blue;
-      green_alpha[block] = texels.green_alpha;
-    });
+    find_texels<kSampling>(bin, texture, pixels, at, lod, red_blue, green_alpha);
   }
   const auto over_w = [&](auto block) HALFPLANE_LAMBDA {
     const PieceColors& of = bin.memory.colors.front();

@@ -127,10 +127,87 @@ struct SurfaceRamps {
   }
 };
 
+/// The usual samples of a tile by footprints, in two steps: linear ones of level 0, and those between two levels.
+template <bool kHasLevels>
+struct TileSamples {
+  FootprintPlaces lower[4], upper[4];
+  I16 part[4];
+  int levels = 0;  ///< 0 for other samples: sample() has them
+
+  /// `lod`: without bias and bounds; `to_sign`: 31 - lane.
+  HALFPLANE_INLINE TileSamples(const LaneTexture& texture, std::uint64_t pixels, const CoordinateLanes (&at)[4],
+                               const I16 (&lod)[4], [[maybe_unused]] const I16& to_sign) {
+    if (texture.has_border || texture.quads == nullptr) return;
+    const auto each = [&](auto&& visit) HALFPLANE_LAMBDA {
+      for_each_block([&](auto block) HALFPLANE_LAMBDA {
+        if (block_bits(pixels, block) != 0) visit(block);
+      });
+    };
+    const auto on_level = [&](FootprintPlaces& places, std::size_t block, const auto& level)
+                              HALFPLANE_LAMBDA { places.set(texture, from_middle_of(at[block], level), level); };
+    if constexpr (!kHasLevels) {
+      const BaseLevel level(texture);
+      each([&](auto block) HALFPLANE_LAMBDA { on_level(lower[block], block, level); });
+      levels = 1;
+    } else {
+      I16 least(std::numeric_limits<std::int32_t>::max()), most(std::numeric_limits<std::int32_t>::min());
+      each([&](auto block) HALFPLANE_LAMBDA {
+        part[block] = bounded_lod(texture, lod[block]);
+        const auto bits = block_bits(pixels, block);  // other lanes are undefined
+        least = min(least, select_by_bits(bits, part[block], least, to_sign));
+        most = max(most, select_by_bits(bits, part[block], most, to_sign));
+      });
+      const Lod low = min_lane(least), high = max_lane(most);
+      const bool is_magnified = high <= texture.magnified;
+      if (is_magnified ? texture.mag != TextureMag::linear
+                       : low <= texture.magnified || texture.min != TextureMin::linear_mipmap_linear)
+        return;
+      levels = is_magnified ? 1 : 2;
+      const auto level_of = [&texture](Lod lambda)
+                                HALFPLANE_LAMBDA { return std::min(lambda >> kLodFraction, texture.last_level); };
+      if (is_magnified || level_of(low) == level_of(high)) {
+        const int first = is_magnified ? 0 : level_of(low);
+        const OneLevel level(texture, first), next(texture, std::min(first + 1, texture.last_level));
+        each([&](auto block) HALFPLANE_LAMBDA {
+          on_level(lower[block], block, level);
+          if (levels == 2) on_level(upper[block], block, next);
+        });
+      } else {
+        each([&](auto block) HALFPLANE_LAMBDA {
+          const LevelPairLanes around(part[block], texture.last_level);
+          on_level(lower[block], block, LaneLevel(texture, around.lower));
+          on_level(upper[block], block, LaneLevel(texture, around.upper));
+        });
+      }
+    }
+  }
+  HALFPLANE_INLINE ColorPairs texels(const LaneTexture& texture, std::size_t block) const {
+    const auto sums = [&texture](const FootprintPlaces& places, SumTo to)
+                          HALFPLANE_LAMBDA { return linear_sums(places.fetched(texture), to); };
+    if (!kHasLevels || levels == 1) return integers_of(sums(lower[block], SumTo::integer));
+    return blend_levels(sums(lower[block], SumTo::level), sums(upper[block], SumTo::level), part[block] & 255);
+  }
+};
+
 template <Sampling kSampling>
 HALFPLANE_INLINE ColorPairs texels_at(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
   if constexpr (kSampling == Sampling::linear) return filter_linear(texture, at, BaseLevel(texture));
   return sample(texture, at, lod);
+}
+
+/// The filtered texels of a tile's blocks.
+template <Sampling kSampling>
+HALFPLANE_INLINE void find_texels(const Bin& bin, const LaneTexture& texture, std::uint64_t pixels,
+                                  const CoordinateLanes (&at)[4], const I16 (&lod)[4], I16 (&red_blue)[4],
+                                  I16 (&green_alpha)[4]) {
+  const TileSamples<kSampling == Sampling::any> usual(texture, pixels, at, lod, bin.position.to_sign);
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    if (block_bits(pixels, block) == 0) return;
+    const ColorPairs texels =
+        usual.levels != 0 ? usual.texels(texture, block) : texels_at<kSampling>(texture, at[block], lod[block]);
+    red_blue[block] = texels.red_blue;
+    green_alpha[block] = texels.green_alpha;
+  });
 }
 
 /// Colours of a tile's `pixels`. Each step runs for all four blocks before the next: the steps of one block depend on
@@ -152,20 +229,10 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
       fetch_texels(of.texture.texels, places.place.data(), nearest.data() + block * kBlockPixels);
     });
   } else if constexpr (kHasTexture) {
-    BlockSample<kSampling == Sampling::any> usual[4];
-    bool is_usual[4];
     for_each_block([&](auto block) HALFPLANE_LAMBDA {
-      if (block_bits(pixels, block) == 0) return;
-      lod[block] = ramps.find_coordinates(of, block, at[block]);
-      is_usual[block] = usual[block].set(of.texture, at[block], lod[block]);
+      if (block_bits(pixels, block) != 0) lod[block] = ramps.find_coordinates(of, block, at[block]);
     });
-    for_each_block([&](auto block) HALFPLANE_LAMBDA {
-      if (block_bits(pixels, block) == 0) return;
-      const ColorPairs texels =
-          is_usual[block] ? usual[block].texels(of.texture) : texels_at<kSampling>(of.texture, at[block], lod[block]);
-      red_blue[block] = texels.red_blue;
-      green_alpha[block] = texels.green_alpha;
-    });
+    find_texels<kSampling>(bin, of.texture, pixels, at, lod, red_blue, green_alpha);
   }
   store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
     const auto pairs = [&]() HALFPLANE_LAMBDA {
@@ -213,7 +280,7 @@ HALFPLANE_INLINE void shade_unlit(Bin& bin, const DrawnSurface& surface, int til
                                   std::uint32_t* const colors, const Packing& packing) {
   if (surface.constants.is_upright) {
     alignas(64) std::array<std::uint32_t, kTilePixels> texels;
-    if (find_upright_texels(bin, surface.constants, tile, texels.data()))
+    if (find_upright_texels(bin, surface, tile, texels.data()))
       return combine_texels(bin, surface, tile, pixels, texels.data(), colors, packing);
   }
   switch (sampling_of(surface.constants)) {

@@ -38,20 +38,20 @@ struct BaseLevel {
   HALFPLANE_INLINE I16 last() const {
     return I16(texture.last[kAxis]);
   }
-  /// Shift from the block bits of a row's number to a place.
+  /// Shift from the block bits of a column's number to a place.
   HALFPLANE_INLINE int pitch() const { return texture.pitch; }
   HALFPLANE_INLINE static I16 first() { return I16(0); }
 };
 
 struct LaneLevel {
-  I16 down[2], last_texel[2], to_row, first_texel;
+  I16 down[2], last_texel[2], to_column, first_texel;
 
   HALFPLANE_INLINE LaneLevel(const LaneTexture& texture, const I16& level) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
       down[axis] = min(level, I16(texture.bits[axis]));
       last_texel[axis] = I16(texture.last[axis]) >> down[axis];
     }
-    to_row = max(texture.bits[0] - level, I16(2));
+    to_column = max(texture.bits[1] - level, I16(TexelBlocks::kShift));
     first_texel = looked_up(texture.first, level);
   }
   template <std::size_t kAxis>
@@ -66,8 +66,36 @@ struct LaneLevel {
   HALFPLANE_INLINE const I16& last() const {
     return last_texel[kAxis];
   }
-  HALFPLANE_INLINE const I16& pitch() const { return to_row; }
+  HALFPLANE_INLINE const I16& pitch() const { return to_column; }
   HALFPLANE_INLINE const I16& first() const { return first_texel; }
+};
+
+/// One level in all lanes.
+struct OneLevel {
+  int down[2];
+  std::int32_t half[2], last_texel[2];
+  int to_column;
+  std::int32_t first_texel;
+
+  HALFPLANE_INLINE OneLevel(const LaneTexture& texture, int level)
+      : to_column(std::max(texture.bits[1] - level, TexelBlocks::kShift)),
+        first_texel(texture.first[static_cast<std::size_t>(level)]) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      down[axis] = std::min(level, texture.bits[axis]);
+      half[axis] = (1 << down[axis]) >> 1;
+      last_texel[axis] = texture.last[axis] >> down[axis];
+    }
+  }
+  template <std::size_t kAxis>
+  HALFPLANE_INLINE I16 rounded(const I16& coordinate) const {
+    return (coordinate + half[kAxis]) >> down[kAxis];
+  }
+  template <std::size_t kAxis>
+  HALFPLANE_INLINE I16 last() const {
+    return I16(last_texel[kAxis]);
+  }
+  HALFPLANE_INLINE int pitch() const { return to_column; }
+  HALFPLANE_INLINE I16 first() const { return I16(first_texel); }
 };
 
 /// wrapped_texel(). `last`: the last texel of the level, a power of two less 1.
@@ -79,11 +107,11 @@ HALFPLANE_INLINE I16 wrapped_texel(const I16& i, TextureWrap wrap, const I16& la
 }
 
 /// The parts of a texel's place in TexelBlocks from its column and its row.
-HALFPLANE_INLINE I16 column_place(const I16& x) { return (x & 3) + ((x & ~3) << 2); }
 template <class Pitch>
-HALFPLANE_INLINE I16 row_place(const I16& y, const Pitch& pitch) {
-  return ((y & 3) << 2) + ((y & ~3) << pitch);
+HALFPLANE_INLINE I16 column_place(const I16& x, const Pitch& pitch) {
+  return (x & 3) + ((x & ~3) << pitch);
 }
+HALFPLANE_INLINE I16 row_place(const I16& y) { return y << TexelBlocks::kShift; }
 
 /// Colours, 8 bits a channel in the halves of lanes.
 struct ColorPairs {
@@ -103,7 +131,7 @@ template <class Level>
 HALFPLANE_INLINE I16 nearest_places(const LaneTexture& texture, const CoordinateLanes& at, const Level& level) {
   const I16 x = wrapped_texel(level.template cut<0>(at.u) >> kTexelFraction, texture.wrap[0], level.template last<0>()),
             y = wrapped_texel(level.template cut<1>(at.v) >> kTexelFraction, texture.wrap[1], level.template last<1>());
-  return level.first() + column_place(x) + row_place(y, level.pitch());
+  return level.first() + column_place(x, level.pitch()) + row_place(y);
 }
 
 /// is_on_border() of texels along one axis.
@@ -140,10 +168,9 @@ HALFPLANE_INLINE void fetch_texels(const void* texels, const std::uint32_t* plac
   for (int i = 0; i < kBlockPixels; ++i) to[i] = static_cast<const std::uint32_t*>(texels)[word_at(places, i)];
 }
 
-/// Input of a linear filter: left and right texels of two rows, R lowest, and the weights of the second column and row,
-/// in 256ths.
+/// Input of a linear filter: TexelBlocks::Quad by channel, and the weights of the second column and row, in 256ths.
 struct Footprints {
-  I16 upper_left, upper_right, lower_left, lower_right, across, down;
+  I16 channel[4], across, down;
 };
 
 /// Texel by texel.
@@ -152,30 +179,48 @@ HALFPLANE_INLINE Footprints gathered_footprints(const LaneTexture& texture, cons
                                                 const Level& level) {
   const I16 x = from_middle.u >> kTexelFraction, y = from_middle.v >> kTexelFraction;
   const auto column = [&](const I16& i) HALFPLANE_LAMBDA {
-    return level.first() + column_place(wrapped_texel(i, texture.wrap[0], level.template last<0>()));
+    return level.first() + column_place(wrapped_texel(i, texture.wrap[0], level.template last<0>()), level.pitch());
   };
   const auto row = [&](const I16& i) HALFPLANE_LAMBDA {
-    return row_place(wrapped_texel(i, texture.wrap[1], level.template last<1>()), level.pitch());
+    return row_place(wrapped_texel(i, texture.wrap[1], level.template last<1>()));
   };
   const auto fetch = [&texture](const I16& place) HALFPLANE_LAMBDA { return gather(texture.texels, place); };
   const I16 left = column(x), right = column(x + 1), upper = row(y), lower = row(y + 1);
-  return {fetch(left + upper),  fetch(right + upper), fetch(left + lower),
-          fetch(right + lower), from_middle.u & 255,  from_middle.v & 255};
+  // TexelBlocks::quad_of().
+  const auto even = [](const I16& first, const I16& second)
+                        HALFPLANE_LAMBDA { return (first & 0xff00ff) | ((second & 0xff00ff) << 8); };
+  const auto odd = [](const I16& first, const I16& second) HALFPLANE_LAMBDA {
+    constexpr auto kOdd = static_cast<std::int32_t>(0xff00ff00U);
+    return (shift_right_logical(first, 8) & 0xff00ff) | (second & kOdd);
+  };
+  const I16 texels[4] = {fetch(left + upper), fetch(right + upper), fetch(left + lower), fetch(right + lower)};
+  const I16 above[2] = {even(texels[0], texels[1]), odd(texels[0], texels[1])},
+            below[2] = {even(texels[2], texels[3]), odd(texels[2], texels[3])};
+  const I16 centre(static_cast<std::int32_t>(TexelBlocks::kCentre));
+  return {{pairs(above[0], below[0]) ^ centre, pairs(above[1], below[1]) ^ centre,
+           upper_pairs(above[0], below[0]) ^ centre, upper_pairs(above[1], below[1]) ^ centre},
+          from_middle.u & 255,
+          from_middle.v & 255};
 }
 
-/// A clamped image has no texels before the first: their weight is that of the first alone.
-HALFPLANE_INLINE I16 part_of(const I16& coordinate, TextureWrap wrap) {
-  const I16 bits = coordinate & 255;
-  return wrap == TextureWrap::clamp ? bits & ~(coordinate >> 31) : bits;
+/// Coordinates, less half a texel, that footprints are fetched by. A clamped image has no texels before the first: their
+/// weight is that of the first alone.
+HALFPLANE_INLINE CoordinateLanes held_for_quads(const LaneTexture& texture, const CoordinateLanes& from_middle) {
+  const auto held = [&](const I16& along, std::size_t axis) HALFPLANE_LAMBDA {
+    return texture.wrap[axis] == TextureWrap::clamp ? max(along, I16(0)) : along;
+  };
+  return {held(from_middle.u, 0), held(from_middle.v, 1)};
 }
 
-/// Places of the footprints of a linear filter, `from_middle`: less half a texel.
+/// Places of the footprints of a linear filter. `at`: held_for_quads().
 template <class Level>
-HALFPLANE_INLINE I16 footprint_places(const LaneTexture& texture, const CoordinateLanes& from_middle,
-                                      const Level& level) {
-  const I16 x = wrapped_texel(from_middle.u >> kTexelFraction, texture.wrap[0], level.template last<0>()),
-            y = wrapped_texel(from_middle.v >> kTexelFraction, texture.wrap[1], level.template last<1>());
-  return level.first() + column_place(x) + row_place(y, level.pitch());
+HALFPLANE_INLINE I16 footprint_places(const LaneTexture& texture, const CoordinateLanes& at, const Level& level) {
+  const auto texel = [&](const I16& along, std::size_t axis, const I16& last) HALFPLANE_LAMBDA {
+    const I16 i = along >> kTexelFraction;
+    return texture.wrap[axis] == TextureWrap::clamp ? min(i, last) : i & last;
+  };
+  return level.first() + column_place(texel(at.u, 0, level.template last<0>()), level.pitch()) +
+         row_place(texel(at.v, 1, level.template last<1>()));
 }
 
 /// A linear filter before its loads: places of footprints in bytes, and weights. Computed for several blocks before the
@@ -189,15 +234,16 @@ struct FootprintPlaces {
   template <class Level>
   HALFPLANE_INLINE void set(const LaneTexture& texture, const CoordinateLanes& from_middle, const Level& level) {
     constexpr int kQuadShift = 4;  // bytes
-    (footprint_places(texture, from_middle, level) << kQuadShift).store(place.data());
-    across = part_of(from_middle.u, texture.wrap[0]);
-    down = part_of(from_middle.v, texture.wrap[1]);
+    const CoordinateLanes at = held_for_quads(texture, from_middle);
+    (footprint_places(texture, at, level) << kQuadShift).store(place.data());
+    across = at.u & 255;
+    down = at.v & 255;
   }
   /// All four texels at once.
   HALFPLANE_INLINE Footprints fetched(const LaneTexture& texture) const {
     const auto* const quads = reinterpret_cast<const char*>(texture.quads);
     const Columns texels = turned_rows([&](int i) HALFPLANE_LAMBDA { return quads + word_at(place.data(), i); });
-    return {texels.first, texels.second, texels.third, texels.fourth, across, down};
+    return {{texels.first, texels.second, texels.third, texels.fourth}, across, down};
   }
 };
 
@@ -224,29 +270,30 @@ HALFPLANE_NOINLINE Footprints bordered_footprints(const LaneTexture& texture, co
                            held_in_image(from_middle.v, texture.beyond[1], level.template last<1>())};
   Footprints texels =
       texture.quads != nullptr ? footprints_of_quads(texture, at, level) : gathered_footprints(texture, at, level);
-  // Before the first texel a quad begins with that one; so the texel to the right of -1 is its left one.
-  I16 is_left_border(0), is_right_border(0), is_upper_border(0), is_lower_border(0);
+  constexpr std::int32_t kLeft = 0xff00ff, kUpper = 0xffff;  // of a channel
+  I16 is_border(0), is_before[2] = {I16(0), I16(0)};
   if (has_border(texture.beyond[0])) {
-    const I16 x = at.u >> kTexelFraction, last = level.template last<0>(), is_before = x < I16(0);
-    texels.upper_right = select(is_before, texels.upper_left, texels.upper_right);
-    texels.lower_right = select(is_before, texels.lower_left, texels.lower_right);
-    texels.across = at.u & 255;
-    is_left_border = is_on_border(x, last);
-    is_right_border = is_on_border(x + 1, last);
+    const I16 x = at.u >> kTexelFraction, last = level.template last<0>();
+    is_border = (is_on_border(x, last) & kLeft) | (is_on_border(x + 1, last) & ~kLeft);
+    is_before[0] = x < I16(0);
   }
   if (has_border(texture.beyond[1])) {
-    const I16 y = at.v >> kTexelFraction, last = level.template last<1>(), is_before = y < I16(0);
-    texels.lower_left = select(is_before, texels.upper_left, texels.lower_left);
-    texels.lower_right = select(is_before, texels.upper_right, texels.lower_right);
-    texels.down = at.v & 255;
-    is_upper_border = is_on_border(y, last);
-    is_lower_border = is_on_border(y + 1, last);
+    const I16 y = at.v >> kTexelFraction, last = level.template last<1>();
+    is_border |= (is_on_border(y, last) & kUpper) | (is_on_border(y + 1, last) & ~kUpper);
+    is_before[1] = y < I16(0);
   }
-  const I16 border(texture.border);
-  texels.upper_left = select(is_left_border | is_upper_border, border, texels.upper_left);
-  texels.upper_right = select(is_right_border | is_upper_border, border, texels.upper_right);
-  texels.lower_left = select(is_left_border | is_lower_border, border, texels.lower_left);
-  texels.lower_right = select(is_right_border | is_lower_border, border, texels.lower_right);
+  if (or_of_lanes(is_border) == 0) return texels;
+  // Before the first texel a quad begins with that one; so the texel to the right of -1 is its left one.
+  if (has_border(texture.beyond[0])) texels.across = at.u & 255;
+  if (has_border(texture.beyond[1])) texels.down = at.v & 255;
+  const auto border = static_cast<std::uint32_t>(texture.border);
+  for (int c = 0; c < 4; ++c) {
+    I16& channel = texels.channel[c];
+    channel = select(is_before[0], (channel & kLeft) | ((channel & kLeft) << 8), channel);
+    channel = select(is_before[1], (channel & kUpper) | (channel << 16), channel);
+    const std::uint32_t four = ((border >> 8 * c & 255) * 0x01010101U) ^ TexelBlocks::kCentre;
+    channel = (channel & ~is_border) | (is_border & static_cast<std::int32_t>(four));
+  }
   return texels;
 }
 
@@ -255,15 +302,13 @@ struct ChannelSums {
   I16 of[4];
 };
 
-/// weighted() of numbers less 2^15.
-HALFPLANE_INLINE I16 weighted_centred(const I16& lanes, const I16& weights, int drop) {
-  return multiply_add_pairs(lanes, weights) + ((1 << 23) + (1 << (drop - 1)));
-}
-/// low * (256 - part) + high * part + 2^(drop - 1) for 16-bit numbers, lane by lane. `lanes`: low and high; `weights`:
-/// of both; `drop`: bits to be rounded.
-HALFPLANE_INLINE I16 weighted(const I16& lanes, const I16& weights, int drop) {
-  constexpr auto kCentre = static_cast<std::int32_t>(0x80008000U);  // for a signed multiply
-  return weighted_centred(lanes ^ kCentre, weights, drop);
+/// How the sum of a linear filter, less 2^23 in 16 fraction bits, is rounded: to an integer in the upper half, or to 8
+/// fraction bits, less 2^15, for blend_levels().
+enum class SumTo : std::int32_t { integer = (1 << 23) + (1 << 15), level = 1 << 7 };
+
+/// low * (256 - part) + high * part for 16-bit numbers less 2^15, lane by lane. `lanes`: low and high; `weights`: of both.
+HALFPLANE_INLINE I16 weighted(const I16& lanes, const I16& weights, SumTo to) {
+  return multiply_add_pairs(lanes, weights) + static_cast<std::int32_t>(to);
 }
 HALFPLANE_INLINE I16 weights_of(const I16& part) { return (256 - part) | (part << 16); }
 
@@ -273,44 +318,36 @@ HALFPLANE_INLINE CoordinateLanes from_middle_of(const CoordinateLanes& at, const
   return {level.template rounded<0>(at.u) - 128, level.template rounded<1>(at.v) - 128};
 }
 
-/// linear_sums(), to be rounded by `drop` bits.
-HALFPLANE_INLINE ChannelSums linear_sums(const Footprints& texels, int drop) {
-  const auto across = as<S32>(doubled(texels.across));
-  // Two channels of a row: at most 255 * 256.
-  const auto mixed = [&across](const S32& left, const S32& right)
-                         HALFPLANE_LAMBDA { return as<I16>((left << 8) + (right - left) * across); };
-  const auto row = [&](const I16& left, const I16& right) HALFPLANE_LAMBDA {
-    const ColorPairs first(left), second(right);
-    return ColorPairs(mixed(as<S32>(first.red_blue), as<S32>(second.red_blue)),
-                      mixed(as<S32>(first.green_alpha), as<S32>(second.green_alpha)));
-  };
+/// Weights of the columns of a row, in bytes, as footprint_sum() takes them.
+HALFPLANE_INLINE S32 columns_of(const I16& part) { return as<S32>(doubled(part | (part << 8)) ^ 0x00ff00ff); }
+
+/// linear_sums() of one channel of Footprints. A row's sum, less 2^15: 256 left + (right - left) * part.
+HALFPLANE_INLINE I16 footprint_sum(const I16& channel, const S32& columns, const I16& down, SumTo to) {
+  const auto bytes = as<S32>(channel);
+  return weighted(as<I16>(multiply_add_bytes(columns, bytes) + multiply_add_bytes(S32(1), bytes)), down, to);
+}
+
+/// linear_sums().
+HALFPLANE_INLINE ChannelSums linear_sums(const Footprints& texels, SumTo to) {
+  const S32 columns = columns_of(texels.across);
   const I16 down = weights_of(texels.down);
-  const ColorPairs above = row(texels.upper_left, texels.upper_right),
-                   below = row(texels.lower_left, texels.lower_right);
-  const auto first = [&](const I16& upper, const I16& lower)
-                         HALFPLANE_LAMBDA { return weighted(pairs(upper, lower), down, drop); };
-  const auto second = [&](const I16& upper, const I16& lower)
-                          HALFPLANE_LAMBDA { return weighted(upper_pairs(upper, lower), down, drop); };
-  return {{first(above.red_blue, below.red_blue), first(above.green_alpha, below.green_alpha),
-           second(above.red_blue, below.red_blue), second(above.green_alpha, below.green_alpha)}};
+  const auto sum = [&](std::size_t c) HALFPLANE_LAMBDA { return footprint_sum(texels.channel[c], columns, down, to); };
+  return {{sum(0), sum(1), sum(2), sum(3)}};
 }
 
 template <class Level>
 HALFPLANE_INLINE ChannelSums linear_sums(const LaneTexture& texture, const CoordinateLanes& at, const Level& level,
-                                         int drop) {
+                                         SumTo to) {
   const CoordinateLanes from_middle = from_middle_of(at, level);
   return linear_sums(texture.has_border         ? bordered_footprints(texture, from_middle, level)
                      : texture.quads != nullptr ? footprints_of_quads(texture, from_middle, level)
                                                 : gathered_footprints(texture, from_middle, level),
-                     drop);
+                     to);
 }
 
-/// linear_sums() of alpha alone, as an integer. `quads`: of the lanes' footprints; `from_middle`: their coordinates.
-HALFPLANE_INLINE I16 linear_alpha(const LaneTexture& texture, const CoordinateLanes& from_middle, const I16& quads) {
-  const auto left = as<S32>(quads & 0xff00ff), right = as<S32>(shift_right_logical(quads, 8) & 0xff00ff);
-  const auto across = as<S32>(doubled(part_of(from_middle.u, texture.wrap[0])));
-  const auto rows = as<I16>((left << 8) + (right - left) * across);
-  return weighted(rows, weights_of(part_of(from_middle.v, texture.wrap[1])), 16) >> 16;
+/// linear_sums() of alpha alone, as an integer. `alphas`: of the lanes' footprints, `at` held_for_quads().
+HALFPLANE_INLINE I16 linear_alpha(const CoordinateLanes& at, const I16& alphas) {
+  return footprint_sum(alphas, columns_of(at.u & 255), weights_of(at.v & 255), SumTo::integer) >> 16;
 }
 
 /// Integer parts of sums with 16 fraction bits.
@@ -320,15 +357,17 @@ HALFPLANE_INLINE ColorPairs integers_of(const ChannelSums& sum) {
 
 template <class Level>
 HALFPLANE_INLINE ColorPairs filter_linear(const LaneTexture& texture, const CoordinateLanes& at, const Level& level) {
-  return integers_of(linear_sums(texture, at, level, 16));
+  return integers_of(linear_sums(texture, at, level, SumTo::integer));
 }
 
-/// blend_levels() for channels with 8 fraction bits.
+/// blend_levels() of a channel of two levels: SumTo::level.
+HALFPLANE_INLINE I16 blended_levels(const I16& lower, const I16& upper, const I16& weights) {
+  return weighted(joined_halves(lower >> 8, upper << 8), weights, SumTo::integer);
+}
 HALFPLANE_INLINE ColorPairs blend_levels(const ChannelSums& lower, const ChannelSums& upper, const I16& part) {
   const I16 weights = weights_of(part);
-  ChannelSums sum;
-  for (std::size_t c = 0; c < 4; ++c) sum.of[c] = weighted(lower.of[c] | (upper.of[c] << 16), weights, 16);
-  return integers_of(sum);
+  const auto sum = [&](std::size_t c) HALFPLANE_LAMBDA { return blended_levels(lower.of[c], upper.of[c], weights); };
+  return integers_of({{sum(0), sum(1), sum(2), sum(3)}});
 }
 
 /// levels_around().
@@ -342,26 +381,19 @@ struct LevelPairLanes {
   }
 };
 
-/// Sums with 8 fraction bits.
-HALFPLANE_INLINE ColorPairs blend_sums(ChannelSums& lower, ChannelSums& upper, const I16& part) {
-  for (I16& channel : lower.of) channel = channel >> 8;
-  for (I16& channel : upper.of) channel = channel >> 8;
-  return blend_levels(lower, upper, part);
-}
-
 HALFPLANE_INLINE ColorPairs filter_trilinear(const LaneTexture& texture, const CoordinateLanes& at,
                                              const LevelPairLanes& levels) {
-  ChannelSums lower = linear_sums(texture, at, LaneLevel(texture, levels.lower), 8),
-              upper = linear_sums(texture, at, LaneLevel(texture, levels.upper), 8);
-  return blend_sums(lower, upper, levels.part);
+  return blend_levels(linear_sums(texture, at, LaneLevel(texture, levels.lower), SumTo::level),
+                      linear_sums(texture, at, LaneLevel(texture, levels.upper), SumTo::level), levels.part);
 }
 
 HALFPLANE_INLINE ColorPairs filter_between_nearest(const LaneTexture& texture, const CoordinateLanes& at,
                                                    const LevelPairLanes& levels) {
   const auto channels = [&](const I16& level) HALFPLANE_LAMBDA {
     const I16 texel = filter_nearest(texture, at, LaneLevel(texture, level));
-    return ChannelSums{{(texel & 255) << 8, texel & 0xff00, shift_right_logical(texel, 8) & 0xff00,
-                        shift_right_logical(texel, 16) & 0xff00}};
+    const auto channel = [&texel](int c)
+                             HALFPLANE_LAMBDA { return ((shift_right_logical(texel, 8 * c) & 255) - 128) << 16; };
+    return ChannelSums{{channel(0), channel(1), channel(2), channel(3)}};
   };
   return blend_levels(channels(levels.lower), channels(levels.upper), levels.part);
 }
@@ -405,37 +437,6 @@ HALFPLANE_NOINLINE ColorPairs sample(const LaneTexture& texture, const Coordinat
   return {select(is_magnified, base.red_blue, small.red_blue),
           select(is_magnified, base.green_alpha, small.green_alpha)};
 }
-
-/// The usual samples of a block by footprints, in two steps: linear ones of level 0, and those between two levels.
-template <bool kBetween>
-struct BlockSample {
-  FootprintPlaces lower, upper;
-  I16 part;
-
-  HALFPLANE_INLINE BlockSample() = default;
-  /// False for other samples: sample() has them.
-  HALFPLANE_INLINE bool set(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
-    if (texture.has_border || texture.quads == nullptr) return false;
-    const auto on_level = [&](FootprintPlaces& places, const auto& level)
-                              HALFPLANE_LAMBDA { places.set(texture, from_middle_of(at, level), level); };
-    if constexpr (!kBetween) {
-      on_level(lower, BaseLevel(texture));
-    } else {
-      const I16 level = bounded_lod(texture, lod);
-      if (texture.min != TextureMin::linear_mipmap_linear || bits_of(level <= texture.magnified) != 0) return false;
-      const LevelPairLanes levels(level, texture.last_level);
-      on_level(lower, LaneLevel(texture, levels.lower));
-      on_level(upper, LaneLevel(texture, levels.upper));
-      part = levels.part;
-    }
-    return true;
-  }
-  HALFPLANE_INLINE ColorPairs texels(const LaneTexture& texture) const {
-    if constexpr (!kBetween) return integers_of(linear_sums(lower.fetched(texture), 16));
-    ChannelSums first = linear_sums(lower.fetched(texture), 8), second = linear_sums(upper.fetched(texture), 8);
-    return blend_sums(first, second, part);
-  }
-};
 
 }  // namespace
 }  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -11,23 +11,30 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// u of a tile's columns and v of its rows, each twice: in lanes 0 to 7 and 8 to 15.
-struct UprightPlaces {
-  CoordinateLanes at;
-
-  /// `tile_x`, `tile_y`: of the target; `q`: in a lane.
-  HALFPLANE_INLINE UprightPlaces(const Bin& bin, const SurfaceConstants& of, int tile_x, int tile_y, std::int32_t q) {
-    const ReciprocalsOfQ reciprocal(I16(q), of.division);
-    const I16 steps = bin.position.pair_x - kTileSize / 2;
-    const auto along = [&](std::size_t axis, std::int32_t step) HALFPLANE_LAMBDA {
-      const LaneAttribute& attribute = of.coordinate.attribute[axis];
-      const I16 u = over_q(steps * step + attribute.p.anchor(tile_x, tile_y), reciprocal, attribute, of.of_coordinate);
-      return on_axis(of.texture, axis, u, of.texture.reference[axis]);
-    };
-    at.u = along(0, of.coordinate.attribute[0].p.step_x);
-    at.v = along(1, of.coordinate.attribute[1].p.step_y);
-  }
-};
+/// Finds u of a tile's columns and v of its rows, each twice: in lanes 0 to 7 and 8 to 15. Tiles of one column have the
+/// same u, tiles of one row the same v.
+HALFPLANE_INLINE const UprightMemory& upright_places(Bin& bin, const DrawnSurface& surface, int tile) {
+  const SurfaceConstants& of = surface.constants;
+  UprightMemory& memory = bin.memory.upright;
+  if (memory.image != surface.number || !of.repeats_places) memory.known = 0;
+  memory.image = surface.number;
+  const std::size_t place[2] = {UprightMemory::column_of(tile), UprightMemory::row_of(tile)};
+  const std::uint32_t both = 1U << place[0] | 1U << place[1];
+  if ((memory.known & both) == both) return memory;
+  memory.known |= both;
+  const int tile_x = (bin.first_x >> kTileShift) + tile % kBinTiles,
+            tile_y = (bin.first_y >> kTileShift) + tile / kBinTiles;
+  const ReciprocalsOfQ reciprocal(I16(of.coordinate.q.anchor(tile_x, tile_y)), of.division);
+  const I16 steps = bin.position.pair_x - kTileSize / 2;
+  const auto along = [&](std::size_t axis, std::int32_t step) HALFPLANE_LAMBDA {
+    const LaneAttribute& attribute = of.coordinate.attribute[axis];
+    const I16 u = over_q(steps * step + attribute.p.anchor(tile_x, tile_y), reciprocal, attribute, of.of_coordinate);
+    on_axis(of.texture, axis, u, of.texture.reference[axis]).store(memory.at[place[axis]].data());
+  };
+  along(0, of.coordinate.attribute[0].p.step_x);
+  along(1, of.coordinate.attribute[1].p.step_y);
+  return memory;
+}
 
 /// A linear filter on one level.
 class UprightFilter {
@@ -41,8 +48,8 @@ class UprightFilter {
               v = from_middle(level.template rounded<1>(at.v), 1, level.template last<1>());
     const I16 is_second = (bin.position.lane >> 3) & 1;  // right, or lower
     const I16 x = (u >> kTexelFraction) + is_second, y = (v >> kTexelFraction) + is_second;
-    columns_ = column_place(wrapped_texel(x, of.wrap[0], level.template last<0>()));
-    const I16 rows = level.first() + row_place(wrapped_texel(y, of.wrap[1], level.template last<1>()), level.pitch());
+    columns_ = column_place(wrapped_texel(x, of.wrap[0], level.template last<0>()), level.pitch());
+    const I16 rows = level.first() + row_place(wrapped_texel(y, of.wrap[1], level.template last<1>()));
     (has_border(of.beyond[1]) ? select(is_on_border(y, level.template last<1>()), I16(kBorder), rows) : rows)
         .store(place_.data());
     across_ = channels_of_eight<false>((u & 255) * 0x01010101);
@@ -50,11 +57,11 @@ class UprightFilter {
     border_columns_ = has_border(of.beyond[0]) ? is_on_border(x, level.template last<0>()) : I16(0);
   }
 
-  /// linear_sums() of a row of eight pixels, to be rounded by `drop` bits: red with blue, and green with alpha.
+  /// linear_sums() of a row of eight pixels: red with blue, and green with alpha.
   struct Sums {
     I16 red_blue, green_alpha;
   };
-  HALFPLANE_INLINE Sums row(std::size_t j, int drop) {
+  HALFPLANE_INLINE Sums row(std::size_t j, SumTo to) {
     const std::int32_t upper = place_[j], lower = place_[j + kTileSize];
     if (upper == at_lower_ || lower == at_upper_) {
       const S32 kept = upper_;
@@ -67,8 +74,8 @@ class UprightFilter {
     at_upper_ = upper;
     at_lower_ = lower;
     const I16 weights(down_[j]);
-    return {weighted_centred(pairs(as<I16>(upper_), as<I16>(lower_)), weights, drop),
-            weighted_centred(upper_pairs(as<I16>(upper_), as<I16>(lower_)), weights, drop)};
+    return {weighted(pairs(as<I16>(upper_), as<I16>(lower_)), weights, to),
+            weighted(upper_pairs(as<I16>(upper_), as<I16>(lower_)), weights, to)};
   }
 
  private:
@@ -105,33 +112,35 @@ HALFPLANE_NOINLINE void upright_linear(const Bin& bin, const LaneTexture& textur
                                        const Level& level, std::uint32_t* to) {
   UprightFilter filter(bin, texture, at, level);
   store_upright(to, [&](std::size_t j) HALFPLANE_LAMBDA {
-    const UprightFilter::Sums sums = filter.row(j, 16);
+    const UprightFilter::Sums sums = filter.row(j, SumTo::integer);
     return as<S32>(upper_pairs(sums.red_blue, sums.green_alpha));
   });
 }
 
 HALFPLANE_NOINLINE void upright_trilinear(const Bin& bin, const LaneTexture& texture, const CoordinateLanes& at,
-                                          const LevelPairLanes& levels, std::uint32_t* to) {
-  UprightFilter lower(bin, texture, at, LaneLevel(texture, levels.lower)),
-      upper(bin, texture, at, LaneLevel(texture, levels.upper));
-  const I16 weights = weights_of(levels.part);
+                                          const LevelPair& levels, std::uint32_t* to) {
+  UprightFilter lower(bin, texture, at, OneLevel(texture, levels.lower)),
+      upper(bin, texture, at, OneLevel(texture, levels.upper));
+  const I16 weights = weights_of(I16(static_cast<std::int32_t>(levels.part)));
   store_upright(to, [&](std::size_t j) HALFPLANE_LAMBDA {
-    const UprightFilter::Sums first = lower.row(j, 8), second = upper.row(j, 8);
-    const auto mixed = [&](const I16& a, const I16& b)
-                           HALFPLANE_LAMBDA { return weighted(joined_halves(a >> 8, b << 8), weights, 16); };
-    return as<S32>(upper_pairs(mixed(first.red_blue, second.red_blue), mixed(first.green_alpha, second.green_alpha)));
+    const UprightFilter::Sums first = lower.row(j, SumTo::level), second = upper.row(j, SumTo::level);
+    return as<S32>(upper_pairs(blended_levels(first.red_blue, second.red_blue, weights),
+                               blended_levels(first.green_alpha, second.green_alpha, weights)));
   });
 }
 
 /// The texels at a tile's pixels, R lowest; false if the filter is not linear.
-HALFPLANE_NOINLINE bool find_upright_texels(const Bin& bin, const SurfaceConstants& of, int tile, std::uint32_t* to) {
+HALFPLANE_NOINLINE bool find_upright_texels(Bin& bin, const DrawnSurface& surface, int tile, std::uint32_t* to) {
+  const SurfaceConstants& of = surface.constants;
   const LaneTexture& texture = of.texture;
   const int tile_x = (bin.first_x >> kTileShift) + tile % kBinTiles,
             tile_y = (bin.first_y >> kTileShift) + tile / kBinTiles;
   const std::int32_t q = of.coordinate.q.anchor(tile_x, tile_y);
-  const UprightPlaces places(bin, of, tile_x, tile_y, q);
+  const UprightMemory& places = upright_places(bin, surface, tile);
+  const CoordinateLanes at{I16::load(places.at[UprightMemory::column_of(tile)].data()),
+                           I16::load(places.at[UprightMemory::row_of(tile)].data())};
   const auto base = [&](bool is_linear) HALFPLANE_LAMBDA {
-    if (is_linear) upright_linear(bin, texture, places.at, BaseLevel(texture), to);
+    if (is_linear) upright_linear(bin, texture, at, BaseLevel(texture), to);
     return is_linear;
   };
   if (sampling_of(texture) == Sampling::linear) return base(true);
@@ -142,11 +151,10 @@ HALFPLANE_NOINLINE bool find_upright_texels(const Bin& bin, const SurfaceConstan
   switch (texture.min) {
     case TextureMin::linear: return base(true);
     case TextureMin::linear_mipmap_nearest:
-      upright_linear(bin, texture, places.at,
-                     LaneLevel(texture, I16(halfplane::nearest_level(lod, texture.last_level))), to);
+      upright_linear(bin, texture, at, OneLevel(texture, halfplane::nearest_level(lod, texture.last_level)), to);
       return true;
     case TextureMin::linear_mipmap_linear:
-      upright_trilinear(bin, texture, places.at, LevelPairLanes(I16(lod), texture.last_level), to);
+      upright_trilinear(bin, texture, at, levels_around(lod, texture.last_level), to);
       return true;
     default: return false;
   }
