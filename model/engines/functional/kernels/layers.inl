@@ -16,16 +16,17 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// src_alpha, one_minus_src_alpha, added, for all channels: the most common blending. The two factors sum to 255.
-/// Alpha, where stored, uses the same factors, or one as the first.
-[[nodiscard]] inline bool has_over_factors(const ColorOps& ops, ColorFormat format) {
+/// src_alpha and `dst`, added, for all channels. Alpha, where stored, uses the same factors, or one as the first.
+[[nodiscard]] inline bool has_factors(const ColorOps& ops, BlendFactor dst, ColorFormat format) {
   const BlendFactors& f = ops.factors;
-  if (f.src != BlendFactor::src_alpha || f.dst != BlendFactor::one_minus_src_alpha ||
-      ops.equation[0] != BlendEquation::add)
-    return false;
+  if (f.src != BlendFactor::src_alpha || f.dst != dst || ops.equation[0] != BlendEquation::add) return false;
   return format != ColorFormat::rgba8888 ||
-         ((f.src_alpha == BlendFactor::src_alpha || f.src_alpha == BlendFactor::one) &&
-          f.dst_alpha == BlendFactor::one_minus_src_alpha && ops.equation[1] == BlendEquation::add);
+         ((f.src_alpha == BlendFactor::src_alpha || f.src_alpha == BlendFactor::one) && f.dst_alpha == dst &&
+          ops.equation[1] == BlendEquation::add);
+}
+/// The most common blending: the two factors sum to 255.
+[[nodiscard]] inline bool has_over_factors(const ColorOps& ops, ColorFormat format) {
+  return has_factors(ops, BlendFactor::one_minus_src_alpha, format);
 }
 
 /// Whether all channels are written. Comparing the arrays is a call for each tile.

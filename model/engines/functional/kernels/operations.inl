@@ -30,6 +30,16 @@ HALFPLANE_INLINE S32 limited_difference(const S32& a, const S32& b) {
   return as<S32>(first - min(first, as<H32>(b)));
 }
 
+/// blended() by src_alpha and one: a stored code of 8 bits adds the same before and after the division.
+HALFPLANE_INLINE ColorPairs added_light(const ColorPairs& source, const ColorPairs& stored, std::int32_t own_factor) {
+  const S32 alpha = alpha_pairs(source.green_alpha), of_alpha = as<S32>(as<I16>(alpha) | own_factor);
+  const auto sum = [](const I16& codes, const S32& factor, const I16& before) HALFPLANE_LAMBDA {
+    return as<I16>(min(divide_by_255(as<S32>(codes) * factor) + as<S32>(before), S32(255)));
+  };
+  return ColorPairs(sum(source.red_blue, alpha, stored.red_blue),
+                    sum(source.green_alpha, of_alpha, stored.green_alpha));
+}
+
 /// A block's colours before they are stored.
 struct BlendLanes {
   const ColorOps& ops;
@@ -218,7 +228,7 @@ HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pi
   const ColorOps& ops = bin.ops->color;
   const ColorFormat format = bin.config.color_format;
   const bool has_alpha = format == ColorFormat::rgba8888, blends = ops.blends(),
-             is_over = has_over_factors(ops, format);
+             is_over = has_over_factors(ops, format), is_light = has_factors(ops, BlendFactor::one, format);
   const std::int32_t own_factor = own_factor_bits(ops);
   const bool writes_some = bin.ops->state.color_write,  // false only without Skip::masked_draws
       has_logic = ops.logic != LogicOp::copy, writes_all = writes_some && !has_logic && writes_all_channels(ops);
@@ -229,6 +239,7 @@ HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pi
     const auto mixed = [&]() HALFPLANE_LAMBDA {
       if (!blends) return colors[block];
       if (is_over) return laid_over(colors[block], widened(stored, format), own_factor);
+      if (is_light) return added_light(colors[block], widened(stored, format), own_factor);
       return BlendLanes(ops, colors[block], widened(stored, format))(has_alpha);
     }();
     I16 code = packed(mixed.red_blue, mixed.green_alpha, packing);
