@@ -16,10 +16,15 @@ for word; do
   before=$word
 done
 [ -n "$source" ] || exec "$@"
-kept=$folder/$(echo "$options $source $(stat -c '%Y %s' "$source")" | cksum | tr ' ' _).o
+headers=$(stat -c '%n %Y %s' "$(dirname "$source")"/verilated*)
+compiler=$1
+[ "$1" != ccache ] || compiler=$2
+kept=$folder/$(echo "$options $source $headers $("$compiler" --version)" | cksum | tr ' ' _).o
 if [ ! -e "$kept" ]; then
   "$@"
   mkdir -p "$folder"
-  cp "$object" "$kept.$$" && mv "$kept.$$" "$kept" # two tests may compile it at once
+  cp "$object" "$kept.$$" # two tests may compile it at once
+  mv "$kept.$$" "$kept"
+else
+  cp "$kept" "$object"
 fi
-cp "$kept" "$object"

@@ -413,8 +413,12 @@ bool Replay::draw_elements(const TraceCall& call, Context& context, std::int64_t
     largest = std::max(largest, index);
   }
   if (!arrays_hold(context, largest)) return false;
-  draw_range_elements(context, argument("mode"), argument("start"), argument("end"), static_cast<GLsizei>(count), type,
-                      array.pointer);
+  const auto size_of_draw = static_cast<GLsizei>(count);
+  if (core_name(call.function()) == "glDrawRangeElements")
+    draw_range_elements(context, argument("mode"), argument("start"), argument("end"), size_of_draw, type,
+                        array.pointer);
+  else
+    gl::draw_elements(context, argument("mode"), size_of_draw, type, array.pointer);
   return true;
 }
 

@@ -123,12 +123,17 @@ void Server::watch(XID window) const {
   xcb_change_window_attributes(connection_, static_cast<xcb_window_t>(window), XCB_CW_EVENT_MASK, &events);
 }
 
-bool Server::has_changed(XID window) {
+void Server::read_events() {
   const std::lock_guard lock(mutex_);
   // Errors come this way as well: of windows that are gone, which is no matter.
   while (const Reply<xcb_generic_event_t> event{xcb_poll_for_event(connection_)})
     if ((event->response_type & 0x7f) == XCB_CONFIGURE_NOTIFY)
       changed_.insert(reinterpret_cast<const xcb_configure_notify_event_t*>(event.get())->window);
+}
+
+bool Server::has_changed(XID window) {
+  read_events();
+  const std::lock_guard lock(mutex_);
   return changed_.erase(window) != 0;
 }
 
@@ -142,7 +147,6 @@ Window::~Window() {
   frame.wait();
   if (server == nullptr) return;
   free_image();
-  if (gc_ != 0) xcb_free_gc(server->connection_, gc_);
   xcb_flush(server->connection_);
 }
 
@@ -160,6 +164,7 @@ void Window::wait_for_server() {
   if (!sent_) return;
   Reply<xcb_get_input_focus_reply_t>(xcb_get_input_focus_reply(server->connection_, *sent_, nullptr));
   sent_.reset();
+  server->read_events();  // also where no swap asks for them
 }
 
 void Window::show(const Framebuffer& picture) {
@@ -218,11 +223,11 @@ void Window::make_image(int width, int height) {
       if (const Reply<xcb_generic_error_t> error{xcb_request_check(connection, asked)}) {
         shmdt(memory);
         segment_ = 0;
+        server->has_shm_ = false;  // a server on another machine
       }
     }
     if (id >= 0) shmctl(id, IPC_RMID, nullptr);  // goes with the last process that has it
     if (segment_ != 0) return;
-    server->has_shm_ = false;  // a server on another machine
   }
   own_.resize(size);
   bytes_ = own_.data();
@@ -268,7 +273,9 @@ void Window::show_in(XID target, const Framebuffer& picture) {
   }
   const auto to = static_cast<xcb_drawable_t>(target);
   const auto w = static_cast<std::uint16_t>(width), depth = static_cast<std::uint16_t>(visual.depth);
-  if (gc_ == 0) xcb_create_gc(connection, gc_ = xcb_generate_id(connection), to, 0, nullptr);
+  // Anew for each picture: the target's screen may be another one, and the last target may have been gone.
+  if (gc_ == 0) gc_ = xcb_generate_id(connection);
+  xcb_create_gc(connection, gc_, to, 0, nullptr);
   if (segment_ != 0) {
     const auto h = static_cast<std::uint16_t>(height);
     xcb_shm_put_image(connection, to, gc_, w, h, 0, 0, w, h, 0, 0, static_cast<std::uint8_t>(depth),
@@ -285,6 +292,7 @@ void Window::show_in(XID target, const Framebuffer& picture) {
                     bytes_ + static_cast<std::size_t>(y) * pitch_);
     }
   }
+  xcb_free_gc(connection, gc_);
   sent_ = xcb_get_input_focus(connection);  // the server reads the picture beside the next frame
   xcb_flush(connection);
 }

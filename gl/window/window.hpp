@@ -74,6 +74,7 @@ class Server {
  private:
   friend class Window;
   Server(xcb_connection_t* connection, int default_screen);
+  void read_events();
 
   xcb_connection_t* connection_;
   int default_screen_;

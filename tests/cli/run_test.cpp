@@ -121,9 +121,9 @@ TEST_F(Run, MissingStatesEndTheProgramIfAsked) {
 TEST_F(Run, WindowsShowWhatIsDrawn) {
   const Outcome outcome = paste(
       "Xvfb -displayfd 1 -screen 0 320x240x24 -nolisten tcp >display.txt 2>xvfb.txt & server=$!\n"
+      "trap 'kill $server' EXIT TERM INT\n"
       "while kill -0 $server && ! [ -s display.txt ]; do sleep 0.02; done\n"
-      "DISPLAY=:$(cat display.txt) '" HALFPLANE_PROGRAM "' run --quiet -- '" HALFPLANE_WINDOW_PROGRAM
-      "'; status=$?; kill $server; exit $status");
+      "DISPLAY=:$(cat display.txt) timeout 60 '" HALFPLANE_PROGRAM "' run --quiet -- '" HALFPLANE_WINDOW_PROGRAM "'");
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
 }
 #endif

@@ -186,7 +186,7 @@ HALFPLANE_INLINE Footprints gathered_footprints(const LaneTexture& texture, cons
   };
   const auto fetch = [&texture](const I16& place) HALFPLANE_LAMBDA { return gather(texture.texels, place); };
   const I16 left = column(x), right = column(x + 1), upper = row(y), lower = row(y + 1);
-  // TexelBlocks::quad_of().
+  // TexelBlocks::Quad.
   const auto even = [](const I16& first, const I16& second)
                         HALFPLANE_LAMBDA { return (first & 0xff00ff) | ((second & 0xff00ff) << 8); };
   const auto odd = [](const I16& first, const I16& second) HALFPLANE_LAMBDA {
