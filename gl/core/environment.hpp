@@ -35,7 +35,8 @@ Value combined(const TextureCombiner& combiner, std::size_t channel, const Sourc
   }
 }
 
-/// Tables 3.21 and 3.22: the modes without a combiner, except that the sum of GL_ADD is not held to 1. `f`: the channel before the unit.
+/// Tables 3.21 and 3.22: the modes without a combiner, except that the sum of GL_ADD is not held to 1. `f`: the channel before
+/// the unit.
 template <class Value>
 Value plain(const TextureUnit& unit, GLenum base, std::size_t channel, const Value& f, const Vec4& texel) {
   const bool is_opaque = base == GL_RGB || base == GL_LUMINANCE, is_color = channel < 3;

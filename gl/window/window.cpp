@@ -234,13 +234,17 @@ void Window::make_image(int width, int height) {
 }
 
 void Window::show_in(XID target, const Framebuffer& picture) {
-  const ColorFormat color_format = frame.options().config.color_format;
-  const int width = picture.width, height = picture.height;
-  xcb_connection_t* const connection = server->connection_;
-  const Visual& visual = format.visual;
-  const bool is_lsb_first = xcb_get_setup(connection)->image_byte_order == XCB_IMAGE_ORDER_LSB_FIRST;
   wait_for_server();
-  make_image(width, height);
+  make_image(picture.width, picture.height);
+  convert(picture);
+  send_to(target);
+}
+
+void Window::convert(const Framebuffer& picture) {
+  const ColorFormat color_format = frame.options().config.color_format;
+  const int width = width_, height = height_;
+  const Visual& visual = format.visual;
+  const bool is_lsb_first = xcb_get_setup(server->connection_)->image_byte_order == XCB_IMAGE_ORDER_LSB_FIRST;
   const bool is_direct = bits_per_pixel_ == 32 && is_lsb_first && visual.red_mask == 0xff0000 &&
                          visual.green_mask == 0xff00 && visual.blue_mask == 0xff &&
                          std::endian::native == std::endian::little;
@@ -271,23 +275,26 @@ void Window::show_in(XID target, const Framebuffer& picture) {
       }
     }
   }
+}
+
+void Window::send_to(XID target) {
+  xcb_connection_t* const connection = server->connection_;
   const auto to = static_cast<xcb_drawable_t>(target);
-  const auto w = static_cast<std::uint16_t>(width), depth = static_cast<std::uint16_t>(visual.depth);
+  const auto w = static_cast<std::uint16_t>(width_), h = static_cast<std::uint16_t>(height_);
+  const auto depth = static_cast<std::uint8_t>(format.visual.depth);
   // Anew for each picture: the target's screen may be another one, and the last target may have been gone.
   if (gc_ == 0) gc_ = xcb_generate_id(connection);
   xcb_create_gc(connection, gc_, to, 0, nullptr);
   if (segment_ != 0) {
-    const auto h = static_cast<std::uint16_t>(height);
-    xcb_shm_put_image(connection, to, gc_, w, h, 0, 0, w, h, 0, 0, static_cast<std::uint8_t>(depth),
-                      XCB_IMAGE_FORMAT_Z_PIXMAP, 0, segment_, 0);
+    xcb_shm_put_image(connection, to, gc_, w, h, 0, 0, w, h, 0, 0, depth, XCB_IMAGE_FORMAT_Z_PIXMAP, 0, segment_, 0);
   } else {
     const std::size_t most =
         xcb_get_maximum_request_length(connection) * std::size_t{4} - sizeof(xcb_put_image_request_t) - 4;
-    const int rows = static_cast<int>(std::clamp<std::size_t>(most / pitch_, 1, static_cast<unsigned>(height)));
-    for (int y = 0; y < height; y += rows) {
-      const int count = std::min(rows, height - y);
+    const int rows = static_cast<int>(std::clamp<std::size_t>(most / pitch_, 1, h));
+    for (int y = 0; y < height_; y += rows) {
+      const int count = std::min(rows, height_ - y);
       xcb_put_image(connection, XCB_IMAGE_FORMAT_Z_PIXMAP, to, gc_, w, static_cast<std::uint16_t>(count), 0,
-                    static_cast<std::int16_t>(y), 0, static_cast<std::uint8_t>(depth),
+                    static_cast<std::int16_t>(y), 0, depth,
                     static_cast<std::uint32_t>(pitch_) * static_cast<unsigned>(count),
                     bytes_ + static_cast<std::size_t>(y) * pitch_);
     }

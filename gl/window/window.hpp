@@ -110,7 +110,11 @@ class Window final : public Drawable {
   unsigned long event_mask = 0;  ///< glXSelectEvent; no pbuffer is ever clobbered
 
  private:
+  /// Memory for a picture of that size, from which the server reads.
   void make_image(int width, int height);
+  /// Writes the picture there, in the visual's pixels.
+  void convert(const Framebuffer& picture);
+  void send_to(XID target);
   void free_image();
   void wait_for_server();
 
