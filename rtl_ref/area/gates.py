@@ -24,6 +24,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 
 # The modules that stay separate: their hierarchy is flattened.
 UNITS = ['raster_top', 'skid_buffer', 'cull', 'cull_serial', 'triangle_setup', 'triangle_setup_serial', 'coarse_raster',
@@ -179,8 +180,8 @@ def digest(*texts):
 
 
 def write_whole(path, text):
-    """Never half a file, whoever reads at the same time."""
-    temporary = path.with_name(f'{path.name}.{os.getpid()}')
+    """Never half a file, whoever reads or writes it at the same time."""
+    temporary = path.with_name(f'{path.name}.{os.getpid()}.{threading.get_ident()}')
     temporary.write_text(text, encoding='utf-8')
     temporary.replace(path)
 
