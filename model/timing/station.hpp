@@ -10,8 +10,8 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
+#include "../own_lines.hpp"
 #include "stalls.hpp"
 
 namespace halfplane {
@@ -42,8 +42,8 @@ class Station {
 
  private:
   Cycle latency_, turnaround_;
-  std::vector<Cycle> free_at_;  ///< ring: when the place of item n - capacity is free
-  Cycle *next_, *end_;          ///< in it
+  OwnLinesVector<Cycle> free_at_;  ///< ring: when the place of item n - capacity is free
+  Cycle *next_, *end_;             ///< in it
 };
 
 /// A Station whose capacity, latency and turnaround are constants of the compiler.

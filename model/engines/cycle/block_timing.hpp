@@ -470,12 +470,12 @@ class BlockTiming {
   std::array<ColorWrite, kWritesInFlight> color_writes_{};  ///< the last writes
   std::size_t next_write_ = 0;
   std::size_t last_line_ = 0;
-  bool last_writes_ = false;     ///< the last fragment may have written depths
-  std::vector<Cycle> slots_;     ///< of victims: the cycle from which on each is free
-  std::vector<Victim> victims_;  ///< by slot
+  bool last_writes_ = false;        ///< the last fragment may have written depths
+  OwnLinesVector<Cycle> slots_;     ///< of victims: the cycle from which on each is free
+  OwnLinesVector<Victim> victims_;  ///< by slot
   std::size_t next_slot_ = 0, oldest_ = 0;
-  std::vector<std::array<std::uint64_t, 2>> dirty_;  ///< by line and plane: stamps that differ from memory
-  bool compresses_;                                  ///< compress.unit
+  OwnLinesVector<std::array<std::uint64_t, 2>> dirty_;  ///< by line and plane: stamps that differ from memory
+  bool compresses_;                                     ///< compress.unit
   std::vector<SampleMask>
       dirty_colors_;         ///< with compress.unit, by line and stamp: samples whose colours differ from memory
   BlockBits of_pixels_;      ///< likewise: blocks that lie in memory with one colour per pixel

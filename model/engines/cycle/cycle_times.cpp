@@ -12,7 +12,7 @@ namespace halfplane {
 namespace {
 
 template <class Timing>
-class TimesOf final : public CycleTimes {
+class alignas(OwnLines<Cycle>::kBytes) TimesOf final : public CycleTimes {
  public:
   TimesOf(const Config& config, MemoryTiming& memory, const CycleOptions& options)
       : widths_(derive_widths(config)),
@@ -312,12 +312,12 @@ class TimesOf final : public CycleTimes {
   TransferSink* sink_;
   bool want_cost_, has_texture_;
   int width_ = 0, height_ = 0;
-  PrimitiveState state_;             ///< of the current primitive
-  TextureWork shading_;              ///< of the current stamp or token
-  std::vector<StampStep> expanded_;  ///< of the current visit, if it was drawn in lanes
-  std::vector<BlockStamp> places_;   ///< of the stamps of tile (0, 0)
-  bool is_resident_ = false;         ///< the tile of the current visit, in a cache of tiles
-  std::vector<SampleMask> even_;     ///< StampStep::even of the last write, by place
+  PrimitiveState state_;               ///< of the current primitive
+  TextureWork shading_;                ///< of the current stamp or token
+  std::vector<StampStep> expanded_;    ///< of the current visit, if it was drawn in lanes
+  OwnLinesVector<BlockStamp> places_;  ///< of the stamps of tile (0, 0)
+  bool is_resident_ = false;           ///< the tile of the current visit, in a cache of tiles
+  std::vector<SampleMask> even_;       ///< StampStep::even of the last write, by place
   std::vector<float> cost_;
   // The next of the current batch.
   const PrimitiveStep* primitive_ = nullptr;

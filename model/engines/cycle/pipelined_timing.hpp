@@ -200,7 +200,7 @@ class PipelinedTiming : public BackTiming<Run> {
   FixedStation<1, PipelinedCycles::cull_sort, 0> sort_;
   FixedStation<1, PipelinedCycles::cull_decide, 0> decide_;
   SetupCycles setup_;
-  std::vector<Station> parts_;                                    ///< of triangle_setup, without the last
+  OwnLinesVector<Station> parts_;                                 ///< of triangle_setup, without the last
   Station offer_setup_;                                           ///< the last part
   Station states_{SetupCycles::kStates, 1, 1}, joined_{1, 1, 0};  ///< lane of states; output register of both
   FixedStation<1, 0, 1> coarse_;

@@ -275,7 +275,7 @@ class PortTiming {
     BeatShare share;
     std::uint32_t base = 0, row = 0;  ///< of tile (0, 0); from a row of tiles to the next
   };
-  std::vector<PlanePlace> places_;                     ///< by plane, not those of flags
+  OwnLinesVector<PlanePlace> places_;                  ///< by plane, not those of flags
   std::array<std::vector<std::uint32_t>, 6> offsets_;  ///< stamp_offset() by plane, but for flags
   bool has_sent_ = false;                              ///< a beat of it has been sent
   Cycle room_ = 0, answered_ = 0;
