@@ -157,26 +157,6 @@ module coarse_raster (
   assign next_x         = exits ? start_x - TX'(turns_back) : goes_left_q ? tile_x_q - TX'(1) : (clears ? group_end : tile_x_q) + TX'(1);
   assign next_y         = tile_y_q + TY'(row_ends);
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      state_q <= IDLE;
-      slot_q  <= '0;
-      used_q  <= '0;
-    end else begin
-      case (state_q)
-        IDLE: if (takes) state_q <= PREPARE;
-        PREPARE:
-        if (has_walk) state_q <= WALK;
-        else if (!clears_bounds) state_q <= enters ? IDLE : PREPARE;
-        else if (visits_are_done && !(left_valid_q && is_visit)) state_q <= CLEAR;
-        CLEAR: if (is_last_tile) state_q <= PASS;
-        default: if (finishes) state_q <= IDLE;
-      endcase
-      if (finishes) slot_q <= slot_q + SLOT'(1);
-      used_q <= used_q + (SLOT + 1)'(takes) - (SLOT + 1)'(slot_free_i);
-    end
-  end
-
   // In PREPARE the step is 0: next_is_outside is that of the first tile.
   logic goes_on, starts, returns, notes_start, moves_right;
   logic [TX-1:0] at_x;  // of the next tile, or of the first one
@@ -195,6 +175,29 @@ module coarse_raster (
       .enable_i(takes || starts || clears || goes_on || is_start_q || moved_start_q || enters),
       .clk_o   (clk)
   );
+
+  always_ff @(posedge clk or negedge rst_ni) begin
+    if (!rst_ni) begin
+      state_q <= IDLE;
+      slot_q  <= '0;
+    end else begin
+      case (state_q)
+        IDLE: if (takes) state_q <= PREPARE;
+        PREPARE:
+        if (has_walk) state_q <= WALK;
+        else if (!clears_bounds) state_q <= enters ? IDLE : PREPARE;
+        else if (visits_are_done && !(left_valid_q && is_visit)) state_q <= CLEAR;
+        CLEAR: if (is_last_tile) state_q <= PASS;
+        default: if (finishes) state_q <= IDLE;
+      endcase
+      if (finishes) slot_q <= slot_q + SLOT'(1);
+    end
+  end
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) used_q <= '0;
+    else used_q <= used_q + (SLOT + 1)'(takes) - (SLOT + 1)'(slot_free_i);
+  end
 
   always_ff @(posedge clk) begin
     if (state_q == IDLE) begin

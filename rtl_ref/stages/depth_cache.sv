@@ -102,11 +102,18 @@ module depth_cache #(
       localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
       localparam int COLORS = raster_pkg::VERTEX_COLOR_BITS;
       logic [PIXELS*COLOR-1:0] made_colors;
+      logic                    packs;
+      register_gate u_gate (
+          .enable_i(made_valid_i),
+          .enable_o(packs)
+      );
       for (s = 0; s < PIXELS; s++) begin : gen_rop
+        logic [COLOR-1:0] color;
         rop u_rop (
             .rgba_i (made_i.code[s*CODES+Z+:COLORS]),
-            .color_o(made_colors[s*COLOR+:COLOR])
+            .color_o(color)
         );
+        assign made_colors[s*COLOR+:COLOR] = packs ? color : '0;
       end
       always_comb begin
         made_packed = made_i;
