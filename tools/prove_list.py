@@ -170,7 +170,7 @@ PROOFS = [
     Proof('fifo_stream', 'f', 'lib/fifo.sv', 'a queue of DEPTH', k=2, cover_depth=8, quick=TINY,
           presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)),
           twins=(('tail_q ^ {1\'b1, {INDEX{1\'b0}}}', 'tail_q'), ('memory_q[head_q[INDEX-1:0]]', 'memory_q[\'0]'),
-                 ('if (leaves)', 'if (ready_i)'))),
+                 ('if (leaves)', 'if (ready_i)'), ('if (ready_o && writes)', 'if (writes)'))),
     Proof('fifo_ahead_stream', 'f', 'lib/fifo.sv', 'the same where a part of the item on offer stands in a register, and of the next '
           'item a part is given', k=2, cover_depth=8,
           quick=TINY, presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4), ('AHEAD', 5), ('NEXT', 4)), file='fifo_stream',

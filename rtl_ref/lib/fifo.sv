@@ -42,7 +42,12 @@ module fifo #(
   end
 
   // What does not enter is written as well, where the next item will be: valid_i comes late, and enables no RAM.
-  always_ff @(posedge clk_i) if (ready_o) memory_q[tail_q[INDEX-1:0]] <= data_i;
+  logic writes;
+  register_gate u_gate (
+      .enable_i(valid_i),
+      .enable_o(writes)
+  );
+  always_ff @(posedge clk_i) if (ready_o && writes) memory_q[tail_q[INDEX-1:0]] <= data_i;
 
   logic [WIDTH-1:0] item;
   assign item = memory_q[head_q[INDEX-1:0]];
