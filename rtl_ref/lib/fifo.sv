@@ -17,7 +17,7 @@ module fifo #(
     // To the consumer
     output logic                  valid_o,
     input  logic                  ready_i,
-    output logic [WIDTH+NEXT-1:0] data_o  // above the item what NEXT gives: undefined where nothing has been stored there
+    output logic [WIDTH+NEXT-1:0] data_o  // above the item what NEXT gives: undefined unless that item is stored
 );
 
   localparam int INDEX = $clog2(DEPTH);
@@ -41,7 +41,8 @@ module fifo #(
     end
   end
 
-  // What does not enter is written as well, where the next item will be: valid_i comes late, and enables no RAM.
+  // While there is room, data_i is written to the next item's place in every cycle; tail_q says whether it has entered. So
+  // valid_i, which comes late, enables no RAM.
   logic writes;
   register_gate u_gate (
       .enable_i(valid_i),

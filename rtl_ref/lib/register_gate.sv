@@ -1,4 +1,4 @@
-// Enables of registers and logic whose values have a reader only while something moves.
+// Enables for registers and logic that are read only while something moves.
 //
 // With CLOCK_GATES defined (clock_gate.sv) an enable is passed on, and Verilator skips what it guards, at the cost of a
 // branch: a clock would cost 200 instructions a cycle. Without, as in an FPGA, the registers load in every cycle.

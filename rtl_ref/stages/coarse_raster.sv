@@ -169,7 +169,7 @@ module coarse_raster (
   assign notes_start = starts || (goes_on && (row_ends || moves_start));
   assign goes_on = steps || (clears && !is_last_tile);  // the last step has no effect
 
-  logic clk;  // of the walk and of the tile it has produced
+  logic clk;  // of the walk, its state and slot, and of the tile it has produced
   clock_gate u_clock_gate (
       .clk_i,
       .enable_i(takes || starts || clears || goes_on || is_start_q || moved_start_q || enters),

@@ -102,10 +102,10 @@ module depth_cache #(
       localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
       localparam int COLORS = raster_pkg::VERTEX_COLOR_BITS;
       logic [PIXELS*COLOR-1:0] made_colors;
-      logic                    packs;
+      logic                    packs_now;
       register_gate u_gate (
           .enable_i(made_valid_i),
-          .enable_o(packs)
+          .enable_o(packs_now)
       );
       for (s = 0; s < PIXELS; s++) begin : gen_rop
         logic [COLOR-1:0] color;
@@ -113,7 +113,7 @@ module depth_cache #(
             .rgba_i (made_i.code[s*CODES+Z+:COLORS]),
             .color_o(color)
         );
-        assign made_colors[s*COLOR+:COLOR] = packs ? color : '0;
+        assign made_colors[s*COLOR+:COLOR] = packs_now ? color : '0;
       end
       always_comb begin
         made_packed = made_i;

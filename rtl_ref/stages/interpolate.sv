@@ -87,25 +87,25 @@ module interpolate (
     end
   end
 
-  logic to_context, to_x_step, to_y_step, to_samples, to_fifo;  // something moves to these steps
+  logic enters_context, enters_x, enters_y, enters_samples, enters_fifo;  // something moves into these steps
   register_gate #(
       .WIDTH(5)
   ) u_gate (
       .enable_i({takes, context_valid_q, x_valid_q, y_valid_q, samples_valid_q}),
-      .enable_o({to_context, to_x_step, to_y_step, to_samples, to_fifo})
+      .enable_o({enters_context, enters_x, enters_y, enters_samples, enters_fifo})
   );
 
   always_ff @(posedge clk_i) begin
-    if (to_context) context_stamp_q <= stamp_i;
-    if (to_x_step) begin
+    if (enters_context) context_stamp_q <= stamp_i;
+    if (enters_x) begin
       x_stamp_q   <= context_stamp_q;
       x_context_q <= context_i;
     end
-    if (to_y_step) begin
+    if (enters_y) begin
       y_stamp_q   <= x_stamp_q;
       y_context_q <= x_context_q;
     end
-    if (to_samples) begin
+    if (enters_samples) begin
       samples_stamp_q   <= y_stamp_q;
       samples_context_q <= y_context_q;
     end
@@ -182,8 +182,8 @@ module interpolate (
           .value_o (y_value)
       );
       always_ff @(posedge clk_i) begin
-        if (to_x_step) x_value_q <= x_value;
-        if (to_y_step) y_value_q <= y_value;
+        if (enters_x) x_value_q <= x_value;
+        if (enters_y) y_value_q <= y_value;
       end
 
       // With several samples per pixel, the plane's increment from the centre to each sample, rounded to the local
@@ -201,7 +201,7 @@ module interpolate (
             .value_o (ways)
         );
         for (k = 0; k < N; k++) begin : gen_place
-          always_ff @(posedge clk_i) if (to_y_step) to_sample_q[k*W+:W] <= ways[k*WIDE+S+:W];
+          always_ff @(posedge clk_i) if (enters_y) to_sample_q[k*W+:W] <= ways[k*WIDE+S+:W];
         end
       end else begin : gen_centre
         assign to_sample_q = '0;
@@ -226,18 +226,18 @@ module interpolate (
           way = p == 0 ? to_sample_q[0+:W] : '0;
           for (int i = 0; i < N; i++) if (p != 0 && shaded_at[s*N+i]) way = way | to_sample_q[i*W+:W];
         end
-        always_ff @(posedge clk_i) if (to_samples) value_q <= value + way;
+        always_ff @(posedge clk_i) if (enters_samples) value_q <= value + way;
 
         // The code is offset by half its range: modulo 2^B that inverts its highest bit.
         if (p < raster_pkg::AFFINE_PLANES) begin : gen_code
-          assign code[s*CODES+CODE+:B] = to_fifo ? {!value_q[L+B-1], value_q[L+:B-1]} : '0;
+          assign code[s*CODES+CODE+:B] = enters_fifo ? {!value_q[L+B-1], value_q[L+:B-1]} : '0;
         end else begin : gen_over_w
           assign code[s*CODES+CODE+:B] = !STORE_CONSTANTS_SEPARATELY ? value_q : s == 0 ? samples_stamp_q.anchor[LOCAL+:W] : '0;
         end
         if (p == 0) begin : gen_depth  // depths of the other samples
           for (k = 1; k < N; k++) begin : gen_further
             logic [W-1:0] further_q;
-            always_ff @(posedge clk_i) if (to_samples) further_q <= value + to_sample_q[k*W+:W];
+            always_ff @(posedge clk_i) if (enters_samples) further_q <= value + to_sample_q[k*W+:W];
             assign made.further_depth[(s*(N-1)+k-1)*B+:B] = {!further_q[L+B-1], further_q[L+:B-1]};
           end
         end
