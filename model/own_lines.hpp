@@ -1,5 +1,5 @@
-// Memory in cache lines of its own. Where two threads work, small blocks next to each other on the heap share lines, which
-// then go back and forth.
+// Memory in cache lines of its own. Small blocks of two threads that are neighbours on the heap share cache lines, which then
+// move between the cores.
 #pragma once
 
 #include <cstddef>
@@ -8,18 +8,21 @@
 
 namespace halfplane {
 
-/// An allocator of whole pairs of lines, as they are prefetched.
+inline constexpr std::size_t kOwnLineBytes = 128;  ///< two lines: processors prefetch lines in pairs
+
+/// Allocates whole pairs of lines.
 template <class T>
 struct OwnLines {
+  static_assert(alignof(T) <= kOwnLineBytes);
   using value_type = T;
-  static constexpr std::size_t kBytes = 128;
   OwnLines() = default;
   template <class U>
   explicit(false) OwnLines(const OwnLines<U>& /*other*/) {}
   [[nodiscard]] T* allocate(std::size_t items) {
-    return static_cast<T*>(::operator new((items * sizeof(T) + kBytes - 1) & -kBytes, std::align_val_t(kBytes)));
+    const std::size_t bytes = (items * sizeof(T) + kOwnLineBytes - 1) / kOwnLineBytes * kOwnLineBytes;
+    return static_cast<T*>(::operator new(bytes, std::align_val_t(kOwnLineBytes)));
   }
-  void deallocate(T* items, std::size_t /*number*/) { ::operator delete(items, std::align_val_t(kBytes)); }
+  void deallocate(T* items, std::size_t /*number*/) { ::operator delete(items, std::align_val_t(kOwnLineBytes)); }
   bool operator==(const OwnLines&) const = default;
 };
 

@@ -15,6 +15,7 @@ import re
 import statistics
 import subprocess
 import sys
+import threading
 
 import area
 
@@ -69,8 +70,8 @@ SYNTH = {'ecp5': 'synth_ecp5 -nowidelut -run :map_luts; techmap -map +/lattice/l
          'gowin': 'synth_gowin -family gw2a', 'ice40': area.SYNTH_ICE40.replace(' -top pin_wrapper', '')}
 # nextpnr for GW2A wants every pin's place; any will do.
 PINS = {'clk_i': 'H11', 'rst_ni': 'T10', 'data_i': 'T3', 'shift_i': 'T2', 'valid_i': 'D7', 'data_o': 'C13'}
-# Placed by `--placer static` and routed without times. nextpnr's routers let a net take up another one's wire for less, the nearer
-# its path comes to the longest: of a design that is dense that ends late or never (docs/area.md).
+# Placed by `--placer static` and routed without times. nextpnr's routers charge a net less for another net's wire, the closer its
+# path is to the longest; in a dense design routing then ends late or never (docs/area.md).
 ROUTED_WITHOUT_TIMES = ['ECP5-25-raster_top-textured-25f']
 # What nextpnr calls places, multipliers and RAMs; a pattern adds up all that it fits.
 USED = {'ice40': ('ICESTORM_LC', 'none', 'ICESTORM_RAM'), 'ecp5': ('TRELLIS_COMB', 'MULT18X18D', 'DP16KD'),
@@ -83,6 +84,8 @@ CELLS = {
               'MULT18X18': (0, 1, 0), 'MULT36X36': (0, 4, 0), 'SDPB': (0, 0, 1), 'SDPX9B': (0, 0, 1), 'DPB': (0, 0, 1),
               'DPX9B': (0, 0, 1), 'SPX9': (0, 0, 1), 'SP': (0, 0, 1)},
 }
+
+LOCKS = collections.defaultdict(threading.Lock)  # of netlists, which rows of several parts share
 
 
 def step(command, inputs, output):
@@ -148,7 +151,8 @@ def netlist(program, family, top, design):
         sys.exit(f'parts: Yosys failed, see {json_file.with_suffix(".log")}')
     if family == 'ecp5':
         whole, json_file = json_file, BUILD / f'{name}_chains.json'
-        step([sys.executable, 'tools/carry_chains.py', whole, json_file], [whole, 'tools/carry_chains.py'], json_file)
+        if not step([sys.executable, 'tools/carry_chains.py', whole, json_file], [whole, 'tools/carry_chains.py'], json_file):
+            sys.exit(f'parts: tools/carry_chains.py failed, see {json_file.with_suffix(".log")}')
     return json_file, stat
 
 
@@ -184,9 +188,11 @@ def place(part, top, json_file, name, seed):
         if not step([*command, json_file, *placing, '--placer', 'static', '--no-route', '--write', placed], [json_file], placed):
             return None
         design = json.loads(placed.read_text(encoding='utf-8'))
-        for module in design['modules'].values():  # the settings of the file count, not the options of the command
-            if 'settings' in module:
-                module['settings']['timing_driven'] = f'{0:032b}'
+        settings = [module['settings'] for module in design['modules'].values() if 'timing_driven' in module.get('settings', {})]
+        if not settings:
+            sys.exit(f'parts: {placed} has no setting timing_driven')
+        for each in settings:  # they replace the options of the command
+            each['timing_driven'] = f'{0:032b}'
         untimed.write_text(json.dumps(design), encoding='utf-8')
         json_file, placing = untimed, ['--no-pack', '--no-place']
     elif kind.family == 'gowin':
@@ -208,14 +214,15 @@ def frames(program, design, mhz):
     preset, settings, size = DESIGNS[design]
     sets = [word for setting in settings for word in ('--set', setting)]
     out = subprocess.run([program, 'render', 'teapot', '--engine', 'cycle', '--config', preset, *sets, '--size', size, '--memory',
-                          'sdram,mhz=133', '--scan-out', '60', '--mhz', f'{mhz:.0f}', '--json', '--quiet', '-o', BUILD / 'picture.png'],
+                          'sdram,mhz=133', '--scan-out', '60', '--mhz', f'{mhz:.0f}', '--json', '--quiet', '-o', BUILD / f'{area.slug(design)}.png'],
                          capture_output=True, text=True, check=True).stdout
     return json.loads(out)['per_second']['frames']
 
 
 def row(program, seeds, part, top, design):
     kind, name = PARTS[part], area.slug(f'{part} {top} {design}')
-    json_file, stat = netlist(program, kind.family, top, design)
+    with LOCKS[kind.family, top, design]:
+        json_file, stat = netlist(program, kind.family, top, design)
     used = count(stat, kind.family) if kind.family != 'ice40' else packed(part, json_file, name)
     lacks = [what for what, have, want in zip(('places', 'multipliers', 'block RAMs'), kind[:3], used) if want > have]
     placed = [place(part, top, json_file, name, seed) for seed in range(1, seeds + 1)] if not lacks else []

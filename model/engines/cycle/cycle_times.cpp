@@ -12,7 +12,7 @@ namespace halfplane {
 namespace {
 
 template <class Timing>
-class alignas(OwnLines<Cycle>::kBytes) TimesOf final : public CycleTimes {
+class alignas(kOwnLineBytes) TimesOf final : public CycleTimes {
  public:
   TimesOf(const Config& config, MemoryTiming& memory, const CycleOptions& options)
       : widths_(derive_widths(config)),

@@ -54,7 +54,7 @@ class StepQueue {
 
   StepRunner& runner_;
   Launch launch_;
-  std::array<Steps, 16> ring_;     ///< one is filled, one runs; with fewer the thread that is ahead sleeps more
+  std::array<Steps, 16> ring_;     ///< one is filled, one runs, the rest wait: with fewer the faster thread sleeps more
   Steps* filling_ = ring_.data();  ///< the one that is filled: of batch filled_
   std::thread thread_;
   std::atomic<std::size_t> filled_ = 0, run_ = 0;  ///< batches; each is written by one of the threads

@@ -126,7 +126,7 @@ struct Steps {
     else
       add(StepKind::outside);
   }
-  /// Long enough to be worth a hand-over between threads, and short enough for a second-level cache.
+  /// Long enough to be worth a hand-over between threads, and short enough for one batch to stay in a second-level cache.
   [[nodiscard]] bool is_full() const { return stamps.size() + lane_stamps.size() >= 1024 || order.size() >= 4096; }
   void clear() {
     order.clear();
