@@ -1,7 +1,8 @@
 // Clock gate: passes the edges of the clock at which a stage has something to do.
 //
 // `enable_i` settles before the edge; the latch holds it while the clock is high. A stage enables its clock when one of
-// its registers would change in a way that matters, so that the design is the same with gates and without.
+// its registers would change in a way that matters, so that the design is the same with gates and without; and in
+// reset, for a reset that begins low has no edge of its own.
 // With CLOCK_GATES defined the gates are there: Verilator leaves out what depends on registers that had no edge. Without,
 // as in an FPGA, the clock is a wire, and the condition has no reader.
 module clock_gate (
