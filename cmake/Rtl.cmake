@@ -55,7 +55,8 @@ endfunction()
 # Adds the Verilated class `Class` of module `TOP` to the static library `target`, which the first call creates. One
 # class per configuration, because parameters are fixed when Verilator runs. INCLUDES: files that `include finds below the
 # caller's folder. TRACE: waveforms (FST) can be written. FAST: with lib/clock_gate.sv and lib/register_gate.sv at work, and
-# compiled with -O2, which takes 1.7 times as long: 12 % and 6 % fewer instructions a frame. Any lint warning of -Wall is an error.
+# compiled with -O2, which takes 1.7 times as long: 12 % and 6 % fewer instructions a frame. Any lint warning of -Wall is an
+# error.
 function(halfplane_verilate target)
   cmake_parse_arguments(PARSE_ARGV 1 RTL "TRACE;FAST" "PREFIX;TOP" "SOURCES;PARAMS;INCLUDES")
   foreach(argument PREFIX TOP SOURCES)

@@ -172,7 +172,8 @@ module coarse_raster (
   logic clk;  // of the walk, its state and slot, and of the tile it has produced
   clock_gate u_clock_gate (
       .clk_i,
-      .enable_i(!rst_ni || takes || starts || clears || goes_on || is_start_q || moved_start_q || enters),
+      .reset_i (!rst_ni),
+      .enable_i(takes || starts || clears || goes_on || is_start_q || moved_start_q || enters),
       .clk_o   (clk)
   );
 

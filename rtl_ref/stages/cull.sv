@@ -66,7 +66,8 @@ module cull (
   logic clk;
   clock_gate u_clock_gate (
       .clk_i,
-      .enable_i(!rst_ni || (primitive_valid_i && primitive_ready_o) || sort_moves || decide_moves || leaves),
+      .reset_i (!rst_ni),
+      .enable_i((primitive_valid_i && primitive_ready_o) || sort_moves || decide_moves || leaves),
       .clk_o   (clk)
   );
 

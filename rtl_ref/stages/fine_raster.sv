@@ -66,7 +66,8 @@ module fine_raster (
   logic clk;  // of this part
   clock_gate u_clock_gate (
       .clk_i,
-      .enable_i(!rst_ni || takes_tile || row_leaves),
+      .reset_i (!rst_ni),
+      .enable_i(takes_tile || row_leaves),
       .clk_o   (clk)
   );
 

@@ -112,7 +112,8 @@ module triangle_setup (
   logic clk;
   clock_gate u_clock_gate (
       .clk_i,
-      .enable_i(!rst_ni || takes || leaves || moves != '0),
+      .reset_i (!rst_ni),
+      .enable_i(takes || leaves || moves != '0),
       .clk_o   (clk)
   );
 
