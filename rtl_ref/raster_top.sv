@@ -134,7 +134,8 @@ module raster_top (
   logic                                                               slot_free, context_read;
   raster_pkg::context_packet_t                                        stamp_context, tested_context;
   logic [raster_pkg::ALL_LOCAL_BITS-1:0]                              context_step;
-  logic [raster_pkg::TRIANGLE_BITS-1:0]                               triangle_number;
+  logic                                                               fragment_comes;
+  logic [raster_pkg::TRIANGLE_BITS-1:0]                               triangle_number, coming_number;
   logic is_primitive, is_zero_area, is_backface, is_empty, is_no_sample, is_dropped;
   logic is_visited, is_outside, is_accepted, is_hiz, visits_are_done, lines_are_done;
   logic [2*raster_pkg::TILE_SHIFT+$clog2(raster_pkg::MSAA_SAMPLES):0] samples_tested;
@@ -314,8 +315,8 @@ module raster_top (
       .read_i           (context_read),
       .read_slot_i      (read_slot),
       .context_o        (stamp_context),
-      .tested_i         (tested_valid),
-      .tested_fragment_i(tested),
+      .comes_i          (fragment_comes),
+      .coming_number_i  (coming_number),
       .tested_context_o (tested_context),
       .number_o         (triangle_number)
   );
@@ -467,6 +468,8 @@ module raster_top (
           .request_i(request_data),
           .bytes_o  (request_bytes)
       );
+      assign fragment_comes = 1'b0;
+      assign coming_number  = '0;
       assign depth_is_held = '0;
       assign held_depth    = '0;
       assign written    = tested_written;
@@ -517,6 +520,8 @@ module raster_top (
           .answer_valid_i  (depth_valid),
           .takes_answer_o  (depth_taken),
           .answer_i        (answered_depth),
+          .comes_o         (fragment_comes),
+          .coming_number_o (coming_number),
           .tested_valid_o  (tested_valid),
           .tested_o        (tested),
           .stored_depth_o  (stored_depth),

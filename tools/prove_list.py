@@ -111,7 +111,7 @@ PROOFS = [
           'overflows', is_combinational=True, twins=(24, ('.step_x_i (step_x)', '.step_x_i (step_y)'),
           ('value_q + place_q[k*W+:W]', 'value_q + place_q[k*W+:W] + W\'(1)'))),
     Proof('coarse_raster_step', 'a', 'stages/coarse_raster.sv', 'edges and planes at each tile of the walk',
-          cuts=SRAMS, twins=(('assign from   = returns ?', 'assign from   = 1\'b0 ?'), ('exits && !starts && !is_start_q', 'exits && !starts'),
+          cuts=SRAMS, twins=(('returns ? row_q', '1\'b0 ? row_q'), ('returned_q ? row_q', '1\'b0 ? row_q'), ('exits && !starts && !is_start_q', 'exits && !starts'),
           ('moved_start_q ? tile_x_q : start_x_q', 'start_x_q'), ('if (starts || goes_on) edge_is_outside', 'if (goes_on) edge_is_outside'), ("to_best  = (TE'(best) <<< TS) - TE'(best) +", "to_best  = (TE'(best) <<< TS) +"))),
     Proof('interpolate_step', 'a, e', 'stages/interpolate.sv', 'every plane at every sample; codes within the vertices\'',
           is_combinational=True, twins=(27, 29)),
@@ -282,7 +282,7 @@ PROOFS = [
           twins=(190, 191, 192, 262, 300, ('writes_all && is_first', 'writes_all'), ('is_newer[1] && !is_newer[0]', 'is_newer[1]'),
                  ('dirty_3_q[s], dirty_2_q[s]}', "dirty_3_q[s], 1'b0}"))),
     Proof('cache_tags_stream', 'f', 'stages/cache_tags.sv', 'each fragment leaves once, in its turn; no deadlock', k=2,
-          cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS, quick=TINY, cover_depth=24,
+          cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS, cover_depth=24,
           twins=(('is_settled && is_item && order_ready_i', 'is_settled && is_item'), ('if (moves) valid_q <= read_valid_q;', 'valid_q <= read_valid_q;'),
                  ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
     Proof('block_cache_data', 'd, f', '../tests/formal/blocks.sv', 'the test sees what was written last, up to the clock before; an '
@@ -303,7 +303,7 @@ PROOFS = [
           is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), joins=JOINED, inputs='block_cache_inputs',
           file='block_cache_whole', package=(*BLOCKS, ('FRAME_CLEARS', 1)), presets=TINY, twins=(70, 73, 76), twin_depth=10),
     Proof('memory_port_stream', 'f', 'stages/memory_port.sv', 'bursts as long as they say; each answer counted; a reset leaves '
-          'nothing stale; no deadlock', has_reset=False, inputs='memory_port_inputs', k=2, quick=TINY, cover_depth=9,
+          'nothing stale; no deadlock', has_reset=False, inputs='memory_port_inputs', k=2, cover_depth=9,
           twins=(104, 105, 106, 107, ("recovers_q <= !rst_ni ||", "recovers_q <= rst_ni &&"), ("length_q   <= length_q - 1'b1;", ''))),
     Proof('memory_port_data', 'f', 'stages/memory_port.sv', 'each byte of a stamp goes out once, to its address; what is read is what '
           'memory answered', has_reset=False, inputs='memory_port_inputs memory_port_stream', k=2, cover_depth=9,

@@ -43,8 +43,8 @@ mutant(17 stages/hiz.sv "HiZ: greater and its like are tested"
   [=[setup_i.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise]=]
   [=[setup_i.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER]=])
 mutant_text(18 stages/coarse_raster.sv "tile walk: a row of tiles starts where the one above ended"
-  [=[assign from   = returns ? row_q : value_q;]=]
-  [=[assign from   = returns && (i != 0 || raster_cosim.mutant_q != 16'd18) ? row_q : value_q;]=])  # depth alone
+  [=[moved_q && returned_q ? row_q]=]
+  [=[moved_q && returned_q && (i != 0 || raster_cosim.mutant_q != 16'd18) ? row_q]=])  # depth alone
 mutant(19 stages/coarse_raster.sv "off by one: the last column of a tile that the box crosses is left out"
   [=[is_rightmost ? s_q.box.right[TS-1:0] : '1]=] [=[is_rightmost ? s_q.box.right[TS-1:0] : ~TS'(1)]=])
 mutant(20 stages/coarse_raster.sv "rounding: the local x step of depth is truncated"
@@ -186,8 +186,8 @@ mutant(65 stages/coarse_raster.sv "tile walk: what lies to the left of a row's s
   [=[start_x != s_q.box.left[PX-1:TS]]=] [=[1'b0]=])
 mutant(66 stages/coarse_raster.sv "tile walk: a row ends at an upright edge that has not been met"
   [=[(dy[D-1] || dy == '0)]=] [=[1'b1]=])
-mutant(67 stages/coarse_raster.sv "tile walk: the first tile to the left of the start has the planes of the start"
-  [=[!starts && !row_ends && moves_left]=] [=[!starts && !row_ends && goes_left_q]=])
+mutant_text(67 stages/coarse_raster.sv "tile walk: the first tile to the left of the start has the planes of the start"
+  [=[moved_left_q <= moves_left]=] [=[moved_left_q <= raster_cosim.mutant_q != 16'd67 ? moves_left : goes_left_q]=])
 
 mutant(401 stages/triangle_setup.sv "divider: what is negative is not made good"
   [=[!from[REMAINDER-1]]=] [=[1'b1]=])

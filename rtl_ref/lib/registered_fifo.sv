@@ -23,6 +23,10 @@ module registered_fifo #(
     input  logic             ready_i,
     output logic [WIDTH-1:0] data_o,
 
+    // A cycle before it is on offer: an item enters the register, and the bits of it above STORED
+    output logic                    comes_o,
+    output logic [WIDTH-STORED-1:0] coming_o,
+
     output logic is_empty_o  // no item is in the memory, the register or between them
 );
 
@@ -37,6 +41,8 @@ module registered_fifo #(
   assign enters     = valid_i && ready_o;
   assign leaves     = valid_o && ready_i;
   assign is_free    = !valid_o || ready_i;
+  assign comes_o    = is_free && waits;
+  assign coming_o   = next;
 
   logic waiting_ready;
   fifo #(

@@ -173,7 +173,7 @@ module coarse_raster (
   clock_gate u_clock_gate (
       .clk_i,
       .reset_i (!rst_ni),
-      .enable_i(takes || starts || clears || goes_on || is_start_q || moved_start_q || enters),
+      .enable_i(takes || starts || clears || goes_on || is_start_q || moved_start_q || moved_q || enters),
       .clk_o   (clk)
   );
 
@@ -313,7 +313,15 @@ module coarse_raster (
 
   // --- Planes: the wide value at the tile's anchor, without the bits that no step changes; setup added the offset that
   // makes its high bits the local anchor. The context holds steps per pixel, narrowed to the local guard bits.
+  // No decision waits for a plane, and where the walk goes is known late: planes keep the tile before, and how it was left.
   logic [raster_pkg::ALL_LOCAL_BITS-1:0] anchor;
+  logic moved_q, returned_q, row_ended_q, moved_left_q;
+  always_ff @(posedge clk) begin
+    moved_q      <= goes_on;
+    returned_q   <= returns;
+    row_ended_q  <= row_ends;
+    moved_left_q <= moves_left;
+  end
   generate
     for (i = 0; i < PLANES; i++) begin : gen_plane
       localparam int P = PLANE_BITS_OF[32*i+:32];
@@ -326,27 +334,26 @@ module coarse_raster (
       localparam int STEP = STEP_AT[32*i+:32];
       logic [P-1:0] value;
       logic [P-1:0] step_x, step_y;
-      logic [M-1:0] value_q, row_q, from, step, next;
+      logic [M-1:0] before_q, row_q, from, step, here;
       assign value  = setup_i.value[PLANE+:P];
       assign step_x = setup_i.step_x[PLANE+:P];
       assign step_y = setup_i.step_y[PLANE+:P];
-      assign from   = returns ? row_q : value_q;
-      assign step   = starts ? '0 : row_ends ? s_q.step_y[PLANE+:M] : s_q.step_x[PLANE+:M];
+      assign from   = moved_q && returned_q ? row_q : before_q;
+      assign step   = !moved_q ? '0 : row_ended_q ? s_q.step_y[PLANE+:M] : s_q.step_x[PLANE+:M];
       add_or_subtract #(
           .WIDTH(M)
-      ) u_next (
-          .subtracts_i(!starts && !row_ends && moves_left),
+      ) u_here (
+          .subtracts_i(!row_ended_q && moved_left_q),
           .a_i        (from),
           .b_i        (step),
-          .sum_o      (next)
+          .sum_o      (here)
       );
       always_ff @(posedge clk) begin
-        if (state_q == IDLE) begin
-          value_q <= value[P-1-:M];
-        end else if (goes_on) value_q <= next;
-        if (is_start_q) row_q <= value_q;
+        if (state_q == IDLE) before_q <= value[P-1-:M];
+        else if (moved_q) before_q <= here;
+        if (is_start_q) row_q <= here;
       end
-      assign anchor[LOCAL+:B]           = value_q[M-1-:B];
+      assign anchor[LOCAL+:B]           = here[M-1-:B];
       assign context_o.step_x[STEP+:SB] = SB'($signed(step_x) >>> NARROW) + SB'(step_x[NARROW-1]);
       assign context_o.step_y[STEP+:SB] = SB'($signed(step_y) >>> NARROW) + SB'(step_y[NARROW-1]);
     end

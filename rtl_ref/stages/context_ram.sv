@@ -23,10 +23,11 @@ module context_ram #(
     input  logic [SLOT-1:0]             read_slot_i,
     output raster_pkg::context_packet_t context_o,
 
-    // To the fragment in the test, likewise: the separate constants
-    input  logic                         tested_i,
-    input  raster_pkg::fragment_packet_t tested_fragment_i,
-    output raster_pkg::context_packet_t  tested_context_o,
+    // The separate constants: read as a fragment comes to the head of the queue in front of the test, there while the
+    // fragment that was at the head in the cycle before is in the test
+    input  logic                                 comes_i,
+    input  logic [raster_pkg::TRIANGLE_BITS-1:0] coming_number_i,
+    output raster_pkg::context_packet_t          tested_context_o,
     output logic [raster_pkg::TRIANGLE_BITS-1:0] number_o  // number of the next triangle
 );
 
@@ -39,7 +40,7 @@ module context_ram #(
       localparam int AT = raster_pkg::STEP_AT[32*raster_pkg::AFFINE_PLANES+:32];
       localparam int STEP = raster_pkg::ALL_STEP_BITS - AT;
       logic [NUMBER-1:0]       number_q;
-      logic [2*STEP+FRAME-1:0] entering, constants;
+      logic [2*STEP+FRAME-1:0] entering, constants, constants_q;
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) number_q <= '0;
         else number_q <= number_q + NUMBER'(write_i);
@@ -53,18 +54,19 @@ module context_ram #(
           .BLOCK    (1)
       ) u_constants (
           .clk_i,
-          .read_i         (tested_i),
-          .read_address_i (NUMBER'(tested_fragment_i.coordinates)),
+          .read_i         (comes_i),
+          .read_address_i (coming_number_i),
           .data_o         (constants),
           .write_i,
           .write_address_i(number_q),
           .data_i         (entering)
       );
+      always_ff @(posedge clk_i) constants_q <= constants;
       always_comb begin
         tested_context_o             = '0;
-        tested_context_o.coordinates = constants[0+:FRAME];
-        tested_context_o.step_x      = raster_pkg::ALL_STEP_BITS'(constants[FRAME+:STEP]) << AT;
-        tested_context_o.step_y      = raster_pkg::ALL_STEP_BITS'(constants[FRAME+STEP+:STEP]) << AT;
+        tested_context_o.coordinates = constants_q[0+:FRAME];
+        tested_context_o.step_x      = raster_pkg::ALL_STEP_BITS'(constants_q[FRAME+:STEP]) << AT;
+        tested_context_o.step_y      = raster_pkg::ALL_STEP_BITS'(constants_q[FRAME+STEP+:STEP]) << AT;
       end
     end else begin : gen_together
       assign number_o         = '0;

@@ -33,6 +33,10 @@ module depth_cache #(
     output logic                    takes_answer_o,
     input  logic [SAMPLES*CODE-1:0] answer_i,
 
+    // To context_ram: in the next cycle a fragment is at the head of the queue; its triangle's number
+    output logic                                 comes_o,
+    output logic [raster_pkg::TRIANGLE_BITS-1:0] coming_number_o,
+
     // To depth_test, which never waits; the stored depths follow in the next cycle, from the RAM, or held here
     output logic                         tested_valid_o,
     output raster_pkg::fragment_packet_t tested_o,
@@ -133,8 +137,11 @@ module depth_cache #(
   );
   // Depths and colours are not read before the test, and with several samples per pixel are most of an item.
   localparam int FURTHER = PIXELS * (raster_pkg::MSAA_SAMPLES - 1) * Z;
-  localparam int IN_BLOCK_RAM = raster_pkg::QUEUE_BLOCK_RAM != 0 ? STORED - raster_pkg::FRAGMENT_HEADER_BITS :
+  localparam int NUMBER = raster_pkg::STORE_CONSTANTS_SEPARATELY != 0 ? raster_pkg::TRIANGLE_BITS : 0;
+  localparam int NUMBER_AT = STORED - raster_pkg::FRAGMENT_HEADER_BITS - NUMBER;
+  localparam int IN_BLOCK_RAM = raster_pkg::QUEUE_BLOCK_RAM != 0 ? NUMBER_AT :
                                 FURTHER != 0 ? FURTHER + PIXELS * CODES : 0;
+  logic [raster_pkg::TAG_RESULT_BITS+STORED-IN_BLOCK_RAM-1:0] coming;
   registered_fifo #(
       .WIDTH (raster_pkg::TAG_RESULT_BITS + STORED),
       .DEPTH (raster_pkg::CACHE_QUEUE),
@@ -148,8 +155,19 @@ module depth_cache #(
       .valid_o   (item_valid),
       .ready_i   (goes),
       .data_o    ({found, item_stored}),
+      .comes_o,
+      .coming_o  (coming),
       .is_empty_o(items_are_done)
   );
+  generate
+    if (raster_pkg::STORE_CONSTANTS_SEPARATELY != 0) begin : gen_number
+      assign coming_number_o = coming[NUMBER_AT-IN_BLOCK_RAM+:NUMBER];
+    end else begin : gen_no_number
+      logic unused;
+      assign unused          = ^coming;
+      assign coming_number_o = '0;
+    end
+  endgenerate
 
   // ----------------------------------------------------------------------------------------- the item that goes to the test
   logic              on_chip, in_memory, reads_victim, slot_free, is_again, leaves_line;

@@ -289,6 +289,8 @@ module interpolate (
       .valid_o   (fragment_valid_o),
       .ready_i   (fragment_ready_i),
       .data_o    (fragment_bits),
+      .comes_o   (),
+      .coming_o  (),
       .is_empty_o(is_empty)
   );
 

@@ -401,7 +401,7 @@ module texture_unit #(
       .BORDER        (BORDER)
   ) u_texture_coordinates (
       .clk_i,
-      .frame_valid_i(enters),
+      .frame_valid_i(stamp_valid_i),  // known early: a stamp that does not enter leaves its constants where the next one's go
       .frame_index_i(entered_q),
       .shift_i,
       .reach_i,
@@ -689,7 +689,7 @@ module texture_unit #(
             .QUEUE     (QUEUE)
         ) u_colors_over_w (
             .clk_i,
-            .frame_valid_i(enters),
+            .frame_valid_i(stamp_valid_i),
             .frame_index_i(entered_q),
             .shift_i      (color_shift_i),
             .reach_i      (color_reach_i),

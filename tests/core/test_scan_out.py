@@ -51,7 +51,7 @@ BENCH = [
              "32'(beat_q) & 32'(WORD_BEATS - 1)) == (FAULT ? 32'd0 : 32'(WORD_BEATS - 1))", "frames_are"),
         ],
     },
-    {"top": "scan_out", "configs": ["small"], "parameters": {"WIDEST": 104}},
+    {"top": "scan_out", "configs": ["small"], "parameters": {"WIDEST": 104}, "tier": "all"},
     {"top": "scan_out", "configs": ["small", "full", "tiny", "resolved"],
      "parameters": {"WIDEST": 104, "FLAGS": 1}, "tier": "all"},
     {"top": "scan_out", "configs": ["embedded", "sampled", "full"],

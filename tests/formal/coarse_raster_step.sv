@@ -73,7 +73,7 @@
         end
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
-        assert (gen_plane[k].value_q == tile_q[P-1-:M] && (starts || is_start_q ? row_first_q == tile_q : gen_plane[k].row_q == row_first_q[P-1-:M]));
+        assert (gen_plane[k].here == tile_q[P-1-:M] && (starts || is_start_q ? row_first_q == tile_q : gen_plane[k].row_q == row_first_q[P-1-:M]));
       // The offer is the tile that the walk has left.
       logic [B-1:0] left_g;
       always_ff @(posedge clk_i) if (left_is_free) left_g <= tile_q[P-1-:B];
