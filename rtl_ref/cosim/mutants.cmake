@@ -308,6 +308,9 @@ mutant(142 stages/triangle_setup.sv "texture: planes over w have the window of c
 mutant(143 stages/triangle_setup.sv "texture: the way to the anchor is that of vertex 0"
   [=[moves_over_w ? {to_base_y_q, to_base_x_q} : {to_anchor_y_q, to_anchor_x_q}]=]
   [=[moves_over_w ? {to_base_y_q, to_anchor_x_q} : {to_anchor_y_q, to_anchor_x_q}]=])
+mutant_text(495 stages/context_ram.sv "texture: of two triangles the second one has the constants of the first"
+  [=[.read_address_i (coming_number_i)]=]
+  [=[.read_address_i (coming_number_i & ~NUMBER'(raster_cosim.mutant_q == 16'd495))]=])
 mutant(144 stages/cull.sv "texture: a triangle has the coordinate frame of the one that comes"
   [=[raster_pkg::COORDINATE_FRAME_BITS'(coordinates_q)]=] [=[raster_pkg::COORDINATE_FRAME_BITS'(p_q.coordinates)]=])
 mutant(145 stages/texture_stage.sv "texture: points and clears have it too"
