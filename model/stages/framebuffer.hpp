@@ -12,7 +12,7 @@
 
 namespace halfplane {
 
-/// Allocates from the start of a cache line on.
+/// Allocates from the start of a cache line on. resize() leaves what is new undefined.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;
@@ -23,8 +23,14 @@ struct CacheLineAllocator {
   CacheLineAllocator(const CacheLineAllocator<U>&) {}  // NOLINT: as allocators are
   [[nodiscard]] T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kLine)); }
   void deallocate(T* p, std::size_t) { ::operator delete(p, kLine); }
+  template <class U>
+  void construct(U* p) {
+    ::new (static_cast<void*>(p)) U;
+  }
   bool operator==(const CacheLineAllocator&) const = default;
 };
+
+enum class FrameContent { zero, undefined };
 
 struct Framebuffer {
   using Image = std::vector<std::uint32_t, CacheLineAllocator<std::uint32_t>>;
@@ -36,12 +42,17 @@ struct Framebuffer {
   std::vector<Framebuffer> samples;  ///< of each sample of a pixel; empty with one sample per pixel
 
   Framebuffer() = default;
-  Framebuffer(int width_, int height_, int tile_size)
+  /// `content`: of depth and colour.
+  Framebuffer(int width_, int height_, int tile_size, FrameContent content = FrameContent::zero)
       : width(width_), height(height_), stride((width_ + tile_size - 1) / tile_size * tile_size) {
     const auto rows = static_cast<std::size_t>((height_ + tile_size - 1) / tile_size * tile_size);
-    depth.resize(static_cast<std::size_t>(stride) * rows);
-    color.resize(depth.size());
-    stencil.resize(depth.size());
+    const std::size_t pixels = static_cast<std::size_t>(stride) * rows;
+    for (Image* image : {&depth, &color})
+      if (content == FrameContent::zero)
+        image->assign(pixels, 0);
+      else
+        image->resize(pixels);
+    stencil.resize(pixels);
   }
 
   /// Whether every sixteen pixels of a row, from its first on, are a cache line.

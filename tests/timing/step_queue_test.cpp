@@ -47,6 +47,28 @@ TEST(StepQueue, BatchesRunInOrderOnTheSecondThread) {
   EXPECT_TRUE(notes.is_elsewhere);
 }
 
+TEST(StepQueue, TheThreadStaysUntilOneIsEnough) {
+  Notes notes;
+  int launches = 0;
+  StepQueue queue(notes, [&](std::function<void()> work) {
+    ++launches;
+    return std::thread(std::move(work));
+  });
+  for (int frame = 0; frame < 3; ++frame) {
+    notes.numbers.clear();
+    hand_over_batches(queue);
+    expect_all_in_order(notes);
+  }
+  EXPECT_EQ(launches, 1);
+  notes.is_elsewhere = false;
+  queue.begin(1);
+  queue.filling().add(StepKind::outside, 1);
+  queue.complete();
+  EXPECT_FALSE(notes.is_elsewhere);
+  hand_over_batches(queue);
+  EXPECT_EQ(launches, 2);
+}
+
 TEST(StepQueue, WhereNoThreadIsToBeHadBatchesRunOnTheFirst) {
   Notes notes;
   StepQueue queue(notes, [](const std::function<void()>&) -> std::thread {

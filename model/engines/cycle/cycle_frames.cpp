@@ -52,8 +52,8 @@ CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render
   }
   model_->end();
   resolve(model_->rendering().frame, config_.color_format);
-  Framebuffer kept;  // where the next frame does not draw
-  if (held != nullptr) kept = model_->rendering().frame;
+  Framebuffer kept;  // where the next frame does not draw; without bins it begins with a clear of all
+  if (held != nullptr && compares_bins(config_)) kept = model_->rendering().frame;
   model_->complete();
   CycleRendering result{std::move(model_->rendering()), {}, std::move(model_->cost()), std::move(model_->misses())};
   model_->rendering().frame = std::move(kept);

@@ -69,7 +69,7 @@ class BitsAndTimes final : public CycleModel {
     if (held.width == width && held.height == height) {
       rendering_.frame = std::move(held);
     } else {
-      rendering_.frame = Framebuffer(width, height, config_.tile_size);
+      rendering_.frame = Framebuffer(width, height, config_.tile_size, FrameContent::undefined);
       fill_padding(rendering_.frame.depth, snap_depth(1.0, config_.depth_bits));  // as in an empty target
       fill_padding(rendering_.frame.color, pack_color(config_.color_format, {0, 0, 0, 255}));
       if (widths_.has_samples != 0)

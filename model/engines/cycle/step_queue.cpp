@@ -5,7 +5,8 @@
 namespace halfplane {
 
 void StepQueue::begin(int threads) {
-  if (threads <= 1 || thread_.joinable()) return;
+  if (threads <= 1) return stop(false);
+  if (thread_.joinable()) return;
   ends_ = false;
   try {
     thread_ = launch_([this] { work(); });
@@ -29,7 +30,7 @@ void StepQueue::hand_over() {
 
 void StepQueue::complete() {
   hand_over();
-  stop(false);
+  wait_until([this] { return run_ == filled_; });
   rethrow();
 }
 

@@ -35,13 +35,14 @@ class StepQueue {
   StepQueue& operator=(const StepQueue&) = delete;
   ~StepQueue() { stop(true); }
 
-  /// With more than one thread batches run on a thread of their own, until complete(); where none is to be had, on this.
+  /// With more than one thread batches run on a thread of their own; where none is to be had, on this. The thread stays
+  /// from frame to frame: a new one has 2 MB of thread-local memory of the functional engine to clear.
   void begin(int threads);
   /// The batch that is being filled.
   [[nodiscard]] Steps& filling() { return *filling_; }
   /// Hands it over. Throws what the runner threw.
   void hand_over();
-  /// Likewise, and waits until all have run. Nothing runs after it.
+  /// Likewise, and waits until all have run.
   void complete();
 
  private:

@@ -201,9 +201,10 @@ struct BinMemory {
   std::vector<PieceColors> colors;        ///< likewise
   std::vector<SurfaceStyle> styles;
 
+  /// On the heap, as below: a thread's own memory is cleared whenever one starts, whatever it is to do.
   static BinMemory& of_thread() {
-    static thread_local BinMemory memory;
-    return memory;
+    static thread_local const auto memory = std::make_unique<BinMemory>();
+    return *memory;
   }
 };
 
@@ -238,8 +239,8 @@ struct SampleMemory {
   TileCutouts cutouts[kBinTiles * kBinTiles];
 
   static SampleMemory& of_thread() {
-    static thread_local SampleMemory memory;
-    return memory;
+    static thread_local const auto memory = std::make_unique<SampleMemory>();
+    return *memory;
   }
 };
 
