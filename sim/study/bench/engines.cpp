@@ -5,12 +5,12 @@
 #include <type_traits>
 #include <utility>
 
+#include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
 #include "model/host/primitive_stream.hpp"
 #include "sim/cosim/rtl_engine.hpp"
-#include "sim/show/report/hardware.hpp"
 #include "sim/study/bench/mesa_peer.hpp"
 
 namespace halfplane {
@@ -46,6 +46,19 @@ Frame rtl_frame(std::shared_ptr<const Scene> scene, const Config& config, const 
   };
 }
 
+/// Frame after frame through one chip, and all of each: no bin is left as it was.
+Frame cycle_frame(std::shared_ptr<const Scene> scene, const Config& config, RenderOptions options) {
+  struct Chip {
+    explicit Chip(const Config& config) : memory(make_memory({}, config)), frames(config, *memory) {}
+    std::unique_ptr<MemoryTiming> memory;
+    CycleFrames frames;
+  };
+  options.skip.bins = false;
+  return [chip = std::make_shared<Chip>(config), scene = std::move(scene), options] {
+    return timed_frame([&] { return chip->frames.draw(*scene, options).run.cycles; });
+  };
+}
+
 Frame llvmpipe_frame(const Scene& scene, const Config& config, int threads) {
   auto peer = std::make_shared<MesaPeer>(scene.width, scene.height, config.depth_bits, threads, config.msaa_samples);
   peer->upload(scene);
@@ -74,10 +87,7 @@ Frame make_frame(std::string_view engine, std::shared_ptr<const Scene> scene, co
   if (engine == "llvmpipe") return llvmpipe_frame(*scene, config, threads);
   if (engine == "cycle" || engine == "rtl") check_hardware_scene(*scene, config);
   if (engine == "rtl") return rtl_frame(std::move(scene), config, options);
-  if (engine == "cycle")
-    return [scene = std::move(scene), config, options] {
-      return timed_frame([&] { return run_cycles(*scene, {config, {}, {}}, options).run.cycles; });
-    };
+  if (engine == "cycle") return cycle_frame(std::move(scene), config, options);
   if (engine == "scalar")
     return [scene = std::move(scene), config, options] {
       return timed_frame([&] { (void)render_scalar(*scene, config, options); });
