@@ -9,9 +9,26 @@
 namespace halfplane {
 namespace {
 
+/// Product: holds numerator * reciprocal.
+template <class Product>
 PlaneValue gradient(std::int64_t numerator, const Reciprocal& reciprocal, int fraction) {
-  const int128 product = static_cast<int128>(numerator) * static_cast<int128>(reciprocal.value);
+  const Product product = static_cast<Product>(numerator) * static_cast<Product>(reciprocal.value);
   return static_cast<PlaneValue>(round_shift(product, reciprocal.shift - fraction));  // modulo 2^64
+}
+
+template <class Product>
+Plane plane_of(std::int64_t base, std::int64_t next, std::int64_t last, const PlaneFrame& f, const Reciprocal& r,
+               int bits) {
+  const std::int64_t ac = next - base, bc = last - base;
+  const auto wrap = [bits](std::uint64_t value) { return wrap_signed(static_cast<std::int64_t>(value), bits); };
+  Plane plane;
+  plane.step_x = wrap(static_cast<std::uint64_t>(gradient<Product>(ac * f.by - bc * f.ay, r, f.fraction)));
+  plane.step_y = wrap(static_cast<std::uint64_t>(gradient<Product>(f.ax * bc - f.bx * ac, r, f.fraction)));
+  // Unsigned arithmetic: the products wrap modulo 2^64, and the plane is their residue.
+  plane.value = wrap((static_cast<std::uint64_t>(base) << f.fraction) +
+                     static_cast<std::uint64_t>(plane.step_x) * static_cast<std::uint64_t>(f.dx) +
+                     static_cast<std::uint64_t>(plane.step_y) * static_cast<std::uint64_t>(f.dy));
+  return plane;
 }
 
 }  // namespace
@@ -29,16 +46,7 @@ PlaneFrame plane_frame(const SnappedVertex& base, const SnappedVertex& next, con
 
 Plane setup_plane(std::int64_t base, std::int64_t next, std::int64_t last, const PlaneFrame& f, const Reciprocal& r,
                   int bits) {
-  const std::int64_t ac = next - base, bc = last - base;
-  const auto wrap = [bits](std::uint64_t value) { return wrap_signed(static_cast<std::int64_t>(value), bits); };
-  Plane plane;
-  plane.step_x = wrap(static_cast<std::uint64_t>(gradient(ac * f.by - bc * f.ay, r, f.fraction)));
-  plane.step_y = wrap(static_cast<std::uint64_t>(gradient(f.ax * bc - f.bx * ac, r, f.fraction)));
-  // Unsigned arithmetic: the products wrap modulo 2^64, and the plane is their residue.
-  plane.value = wrap((static_cast<std::uint64_t>(base) << f.fraction) +
-                     static_cast<std::uint64_t>(plane.step_x) * static_cast<std::uint64_t>(f.dx) +
-                     static_cast<std::uint64_t>(plane.step_y) * static_cast<std::uint64_t>(f.dy));
-  return plane;
+  return plane_of<int128>(base, next, last, f, r, bits);
 }
 
 namespace {
@@ -58,8 +66,10 @@ void for_each_plane(const std::array<SnappedVertex, 3>& v, std::int64_t area, in
   const auto made = [&](std::size_t p, std::int64_t from, std::int64_t next, std::int64_t last,
                         const PlaneFrame& frame) {
     const AttributeWidths& attribute = widths.of_plane(p);
-    plane(p, setup_plane(from, next, last, frame, reciprocal(quotient, significant_bits - attribute.reciprocal_bits()),
-                         attribute.plane.bits));
+    const Reciprocal scale = reciprocal(quotient, significant_bits - attribute.reciprocal_bits());
+    const bool is_short = attribute.product.bits <= 64 && widths.area.bits + attribute.reciprocal.bits <= 64;
+    plane(p, is_short ? plane_of<std::int64_t>(from, next, last, frame, scale, attribute.plane.bits)
+                      : plane_of<int128>(from, next, last, frame, scale, attribute.plane.bits));
   };
   const PlaneFrame frame = plane_frame(v[0], v[1], v[2], first_x, first_y, config.tile_size, widths);
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
@@ -150,12 +160,11 @@ TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, con
 }
 
 std::uint64_t plane_bias(const AttributeWidths& attribute, const Widths& widths) {
-  const int guard_bits = attribute.guard_bits();        // l, at least 1
-  const int drop = widths.plane_fraction - guard_bits;  // F - l, at least 2
-  if (attribute.affine_code.bits == 0) return std::uint64_t{1} << (drop - 1);
-  const std::uint64_t to_window = std::uint64_t{1} << (attribute.code.bits - 1 + guard_bits),
-                      half = std::uint64_t{1} << (guard_bits - 1);
-  return (std::uint64_t{1} << (drop - 1)) + ((to_window + half) << drop);
+  const auto bit = [](int n) { return std::uint64_t{1} << n; };
+  const int fraction = widths.plane_fraction;
+  const std::uint64_t half = bit(fraction - attribute.guard_bits() - 1);  // F - l is at least 2
+  if (attribute.affine_code.bits == 0) return half;
+  return half + bit(fraction - 1) + bit(fraction + attribute.code.bits - 1);  // l is at least 1
 }
 
 namespace {
