@@ -23,36 +23,31 @@ struct UnwatchedWalk {
   void skip_behind() const {}            ///< a tile is behind its bound
 };
 
-/// The stage: calls emit(TilePacket) in the order of the walk; emit retires the visit.
-template <class Emit, class Watch = UnwatchedWalk>
-void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const Widths& widths, CounterPacket& counters,
-                   Emit&& emit, Watch&& watch = {}) {
+/// The walk: calls visit(VisitedTile) in its order, which retires the visit, and, if its last tile is skipped or the
+/// primitive is a token, end(tile_x, tile_y) with that tile.
+template <class Visit, class End, class Watch>
+void walk_tiles(const SetupPacket& setup, Hiz& hiz, const Widths& widths, CounterPacket& counters, Visit&& visit,
+                End&& end, Watch&& watch) {
   const int first_x = setup.box.left >> widths.tile_shift, last_x = setup.box.right >> widths.tile_shift;
   const int first_y = setup.box.top >> widths.tile_shift, last_y = setup.box.bottom >> widths.tile_shift;
-  const auto emit_end = [&](int tile_x, int tile_y) {  // the end of the primitive without a visit
-    TilePacket packet = make_tile_packet(setup, tile_x, tile_y, slot, true, widths);
-    packet.is_visit = packet.is_inside = false;
-    emit(packet);
-  };
   const PrimitiveKind kind = setup.kind;
   if (is_token(kind)) {
     if (kind == PrimitiveKind::fast_clear && setup.state.depth_write)
       hiz.clear(last_x, last_y, setup.range.high[kDepthPlane]);
     if (kind == PrimitiveKind::line) hiz.pass_line(setup);
-    emit_end(last_x, last_y);
+    end(last_x, last_y);
     return;
   }
   std::uint64_t visited = 0, outside_tiles = 0, behind = 0, inside = 0, tested = 0;  // counted for triangles
   const bool asks_hiz = hiz.is_eligible(setup, widths);
   TileWalk walk(first_x, first_y, last_x, last_y, setup.dy);
-  const TileConstants constants(setup, widths);
+  const TileEdges edges(setup, widths);
   bool has_ended = false;
   unsigned outside = 0;
-  TilePacket packet;
   do {
     ++visited;
-    const EdgeValues edges = edges_at_tile(setup, walk.x(), walk.y(), widths);
-    outside = constants.outside(edges);
+    const EdgeValues value = edges.at(walk.x(), walk.y());
+    outside = edges.outside(value);
     if (!watch.rejects) outside = 0;
     if (asks_hiz && outside == 0) watch.read_bound();
     if (outside != 0) {
@@ -63,13 +58,13 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
       watch.skip_behind();
     } else {
       has_ended = walk.is_last();
-      make_tile_packet(setup, constants, edges, walk.x(), walk.y(), slot, has_ended, widths, packet);
+      const VisitedTile tile = visited_tile(setup, edges, value, walk.x(), walk.y(), has_ended, widths);
       hiz.begin_visit(setup.state);
-      if (packet.is_inside != 0)
+      if (tile.is_inside)
         ++inside;
       else
-        tested += to_bounds(packet.box).samples() * static_cast<std::uint64_t>(widths.pixel_samples);
-      emit(packet);
+        tested += to_bounds(tile.box).samples() * static_cast<std::uint64_t>(widths.pixel_samples);
+      visit(tile);
     }
   } while (walk.next(outside));
   if (kind == PrimitiveKind::triangle) {
@@ -79,7 +74,27 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
     counters.trivially_accepted += inside;
     counters.samples_tested += tested;
   }
-  if (!has_ended) emit_end(walk.x(), walk.y());
+  if (!has_ended) end(walk.x(), walk.y());
+}
+
+/// The stage: calls emit(TilePacket) in the order of the walk; emit retires the visit.
+template <class Emit, class Watch = UnwatchedWalk>
+void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const Widths& widths, CounterPacket& counters,
+                   Emit&& emit, Watch&& watch = {}) {
+  const TilePlanes planes(setup, widths);
+  TilePacket packet;
+  walk_tiles(
+      setup, hiz, widths, counters,
+      [&](const VisitedTile& tile) {
+        make_tile_packet(setup, planes, tile, slot, widths, packet);
+        emit(packet);
+      },
+      [&](int tile_x, int tile_y) {  // the end of the primitive without a visit
+        TilePacket end = make_tile_packet(setup, tile_x, tile_y, slot, true, widths);
+        end.is_visit = end.is_inside = false;
+        emit(end);
+      },
+      watch);
 }
 
 }  // namespace halfplane

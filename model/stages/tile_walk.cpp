@@ -2,14 +2,20 @@
 
 namespace halfplane {
 
-TileConstants::TileConstants(const SetupPacket& setup, const Widths& widths)
-    : largest_(moved_by_samples({}, setup.dx, setup.dy, true, widths)),
-      smallest_(moved_by_samples({}, setup.dx, setup.dy, false, widths)),
-      planes_(static_cast<std::size_t>(widths.planes)) {
+TileEdges::TileEdges(const SetupPacket& setup, const Widths& widths)
+    : value_(edges_at_tile(setup, 0, 0, widths)),
+      largest_(moved_by_samples({}, setup.dx, setup.dy, true, widths)),
+      smallest_(moved_by_samples({}, setup.dx, setup.dy, false, widths)) {
   for (std::size_t i = 0; i < 3; ++i) {
+    step_x_[i] = -(EdgeValue{setup.dy[i]} << widths.tile_shift);
+    step_y_[i] = EdgeValue{setup.dx[i]} << widths.tile_shift;
     largest_[i] = largest_in_tile(largest_[i], setup.dx[i], setup.dy[i], 1 << widths.tile_shift);
     smallest_[i] = smallest_in_tile(smallest_[i], setup.dx[i], setup.dy[i], 1 << widths.tile_shift);
   }
+}
+
+TilePlanes::TilePlanes(const SetupPacket& setup, const Widths& widths)
+    : planes_(static_cast<std::size_t>(widths.planes)) {
   for (std::size_t p = 0; p < planes_; ++p) {
     const AttributeWidths& attribute = widths.of_plane(p);
     const int upper = 64 - attribute.plane.bits, tile = widths.tile_shift + widths.grid_bits;
@@ -20,30 +26,27 @@ TileConstants::TileConstants(const SetupPacket& setup, const Widths& widths)
   }
 }
 
-void make_tile_packet(const SetupPacket& setup, const TileConstants& constants, const EdgeValues& value, int tile_x,
-                      int tile_y, std::uint8_t slot, bool ends, const Widths& widths, TilePacket& packet) {
-  const int last = (1 << widths.tile_shift) - 1;
-  const auto inside_tile = [&](int pixel, int tile) {
-    return static_cast<std::uint8_t>(std::clamp(pixel - (tile << widths.tile_shift), 0, last));
-  };
+void make_tile_packet(const SetupPacket& setup, const TilePlanes& planes, const VisitedTile& tile, std::uint8_t slot,
+                      const Widths& widths, TilePacket& packet) {
   packet.kind = setup.kind;
   packet.is_visit = true;
-  packet.ends_primitive = ends;
-  packet.key = {setup.primitive_id, static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y)};
+  packet.ends_primitive = tile.ends_primitive;
+  packet.key = {setup.primitive_id, static_cast<std::uint16_t>(tile.x), static_cast<std::uint16_t>(tile.y)};
   packet.slot = slot;
-  packet.box = {inside_tile(setup.box.left, tile_x), inside_tile(setup.box.top, tile_y),
-                inside_tile(setup.box.right, tile_x), inside_tile(setup.box.bottom, tile_y)};
-  packet.is_inside = constants.is_inside(value);
-  for (std::size_t i = 0; i < 3; ++i) packet.edge_value[i] = saturate_tile_edge(value[i], widths);
-  constants.set_anchors(tile_x - (setup.box.left >> widths.tile_shift), tile_y - (setup.box.top >> widths.tile_shift),
-                        packet.anchor);
+  packet.box = tile.box;
+  packet.is_inside = tile.is_inside;
+  for (std::size_t i = 0; i < 3; ++i) packet.edge_value[i] = saturate_tile_edge(tile.edges[i], widths);
+  planes.set_anchors(tile.x - (setup.box.left >> widths.tile_shift), tile.y - (setup.box.top >> widths.tile_shift),
+                     packet.anchor);
 }
 
 TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot, bool ends,
                             const Widths& widths) {
+  const TileEdges edges(setup, widths);
   TilePacket packet;
-  make_tile_packet(setup, TileConstants(setup, widths), edges_at_tile(setup, tile_x, tile_y, widths), tile_x, tile_y,
-                   slot, ends, widths, packet);
+  make_tile_packet(setup, TilePlanes(setup, widths),
+                   visited_tile(setup, edges, edges.at(tile_x, tile_y), tile_x, tile_y, ends, widths), slot, widths,
+                   packet);
   return packet;
 }
 

@@ -52,11 +52,17 @@ enum class TileClass { outside, cut, inside };
   return value;
 }
 
-/// What the tiles of a primitive have in common.
-class TileConstants {
+/// The edges of a primitive at its tiles, and what these have in common.
+class TileEdges {
  public:
-  TileConstants(const SetupPacket& setup, const Widths& widths);
+  TileEdges(const SetupPacket& setup, const Widths& widths);
 
+  /// edges_at_tile().
+  [[nodiscard]] EdgeValues at(int tile_x, int tile_y) const {
+    EdgeValues value;
+    for (std::size_t i = 0; i < 3; ++i) value[i] = value_[i] + step_x_[i] * tile_x + step_y_[i] * tile_y;
+    return value;
+  }
   /// outside_edges() and whether the tile is inside all of them, with several samples as far as a sample may lie.
   /// `value`: of the edges at the tile's first pixel.
   [[nodiscard]] unsigned outside(const EdgeValues& value) const {
@@ -67,7 +73,18 @@ class TileConstants {
   [[nodiscard]] bool is_inside(const EdgeValues& value) const {
     return ((value[0] + smallest_[0]) | (value[1] + smallest_[1]) | (value[2] + smallest_[2])) >= 0;
   }
-  /// The local anchors of the planes, `right` and `down` tiles from the first one.
+
+ private:
+  EdgeValues value_, step_x_, step_y_;  ///< at tile (0, 0); per tile
+  EdgeValues largest_, smallest_;       ///< over a tile, from the value at its first pixel
+};
+
+/// The planes of a primitive at its tiles.
+class TilePlanes {
+ public:
+  TilePlanes(const SetupPacket& setup, const Widths& widths);
+
+  /// Their local anchors, `right` and `down` tiles from the first one.
   void set_anchors(int right, int down, PerPlane<std::int64_t>& anchor) const {
     const auto x = static_cast<std::uint64_t>(std::int64_t{right}), y = static_cast<std::uint64_t>(std::int64_t{down});
     for (std::size_t p = 0; p < planes_; ++p)
@@ -75,10 +92,17 @@ class TileConstants {
   }
 
  private:
-  EdgeValues largest_, smallest_;  ///< over a tile, from the value at its first pixel
   std::size_t planes_;
-  PerPlane<std::uint64_t> value_, step_x_, step_y_;  ///< of planes, per tile: their bits are the upper ones
+  PerPlane<std::uint64_t> value_, step_x_, step_y_;  ///< per tile: their bits are the upper ones
   PerPlane<std::uint8_t> unused_;                    ///< bits of 64 that a local anchor does not have
+};
+
+/// A tile that a primitive is drawn in.
+struct VisitedTile {
+  int x = 0, y = 0;
+  EdgeValues edges{};  ///< at its first pixel
+  TileBox box;         ///< pixels of the tile inside the primitive's box
+  bool is_inside = false, ends_primitive = false;
 };
 
 /// The way through the tiles of a primitive's box. A row is walked to the right from its start, then from there to the
@@ -170,11 +194,23 @@ class TileWalk {
   return value;
 }
 
-/// The packet of a visit to tile (tile_x, tile_y). `slot` is the context slot of the primitive; `ends`: no other follows.
-/// The first form sets every field that `widths` uses, so that one packet serves for one tile after
-/// the other; `value`: edges_at_tile().
-void make_tile_packet(const SetupPacket& setup, const TileConstants& constants, const EdgeValues& value, int tile_x,
-                      int tile_y, std::uint8_t slot, bool ends, const Widths& widths, TilePacket& packet);
+/// The visit of tile (tile_x, tile_y), and its packet. `slot` is the context slot of the primitive; `ends`: no other
+/// follows. The first form of the packet sets every field that `widths` uses, so that one packet serves for one tile
+/// after the other.
+[[nodiscard]] inline VisitedTile visited_tile(const SetupPacket& setup, const TileEdges& edges, const EdgeValues& value,
+                                              int tile_x, int tile_y, bool ends, const Widths& widths) {
+  const int last = (1 << widths.tile_shift) - 1, left = tile_x << widths.tile_shift, top = tile_y << widths.tile_shift;
+  const auto in_tile = [last](int pixel) { return static_cast<std::uint8_t>(std::clamp(pixel, 0, last)); };
+  const PixelBox& box = setup.box;
+  return {tile_x,
+          tile_y,
+          value,
+          {in_tile(box.left - left), in_tile(box.top - top), in_tile(box.right - left), in_tile(box.bottom - top)},
+          edges.is_inside(value),
+          ends};
+}
+void make_tile_packet(const SetupPacket& setup, const TilePlanes& planes, const VisitedTile& tile, std::uint8_t slot,
+                      const Widths& widths, TilePacket& packet);
 [[nodiscard]] TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot,
                                           bool ends, const Widths& widths);
 

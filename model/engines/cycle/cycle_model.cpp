@@ -350,46 +350,45 @@ class BitsAndTimes final : public CycleModel {
 
   /// Runs coarse_raster, and for each visit the rest of the pipeline.
   void draw(const SetupPacket& setup, std::uint32_t primitive) {
+    const WalkWatch watch{*this, options_.parameters.rejects != 0};
+    const auto end_walk = [this] {
+      steps().add(StepKind::end_walk);
+      added();
+    };
+    if (!options_.want_count && !options_.want_ids && lanes_.draws(setup.state, path_.colors().tests_alpha())) {
+      lanes_.begin(setup);
+      walk_tiles(
+          setup, hiz_, widths_, counters_, [&](const VisitedTile& tile) { visit_in_lanes(setup, tile); },
+          [&](int, int) { end_walk(); }, watch);
+      return;
+    }
     make_context(setup, widths_, context_);
-    const ContextPacket& context = context_;
     const EdgeContext edges = make_edge_context(setup);
-    const bool is_in_lanes =
-        !options_.want_count && !options_.want_ids && lanes_.draws(setup.state, path_.colors().tests_alpha());
-    if (is_in_lanes)
-      lanes_.begin(context, edges);
-    else
-      places_.emplace(edges, widths_);
+    places_.emplace(edges, widths_);
     coarse_raster(
         setup, 0, hiz_, widths_, counters_,
-        [&](const TilePacket& tile) {
-          if (!tile.is_visit)
-            steps().add(StepKind::end_walk);
-          else if (is_in_lanes)
-            visit_in_lanes(tile);
-          else
-            visit(tile, edges, *places_, context, primitive);
-          added();
-        },
-        WalkWatch{*this, options_.parameters.rejects != 0});
+        [&](const TilePacket& tile) { tile.is_visit ? visit(tile, edges, *places_, context_, primitive) : end_walk(); },
+        watch);
   }
 
   /// The step of a visit, without its stamps.
-  void add_visit(StepKind kind, const TilePacket& tile, std::size_t stamps) {
+  void add_visit(StepKind kind, const VisitStep& visit, std::size_t stamps) {
     steps().add(kind, stamps, std::exchange(reads_bound_, false));
-    steps().visits.add_item({tile.key.tile_x, tile.key.tile_y, tile.box, tile.ends_primitive});
+    steps().visits.add_item(visit);
   }
 
-  void visit_in_lanes(const TilePacket& tile) {
+  void visit_in_lanes(const SetupPacket& setup, const VisitedTile& tile) {
     LaneStamp* const first = steps().lane_stamps.room(static_cast<std::size_t>(widths_.stamps.stamps()));
     std::uint8_t* const first_row = steps().lane_rows.room(static_cast<std::size_t>(widths_.stamps.stamps_per_row));
     LaneStamp* next = first;
     std::uint8_t* row = first_row;
-    const RetirePacket retired = lanes_.draw(tile, rendering_.frame, counters_, next, row);
+    const RetirePacket retired = lanes_.draw(setup, tile, rendering_.frame, counters_, next, row);
     const auto stamps = static_cast<std::size_t>(next - first);
     steps().lane_stamps.add(stamps);
     steps().lane_rows.add(static_cast<std::size_t>(row - first_row));
-    add_visit(StepKind::lane_visit, tile, stamps);
+    add_visit(StepKind::lane_visit, {retired.key.tile_x, retired.key.tile_y, tile.box, tile.ends_primitive}, stamps);
     if (config_.hiz_bits != 0) hiz_.retire(retired);
+    added();
   }
 
   void visit(const TilePacket& tile, const EdgeContext& edges, const StampEdges& places, const ContextPacket& context,
@@ -408,8 +407,10 @@ class BitsAndTimes final : public CycleModel {
       const StampFate fate = shade(&stamp, &context, primitive);
       note_fate(fate, fate.passed.any(), sent);
     });
-    add_visit(StepKind::visit, tile, steps().stamps.size() - stamps_before);
+    add_visit(StepKind::visit, {tile.key.tile_x, tile.key.tile_y, tile.box, tile.ends_primitive},
+              steps().stamps.size() - stamps_before);
     if (config_.hiz_bits != 0) hiz_.retire(path_.retire(fragment_));
+    added();
   }
 
   /// Applies a token's state, here and in the tags, and notes its work in the texture unit.

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "../../stages/coarse_raster.hpp"
 #include "../../stages/depth_test.hpp"
 #include "../../stages/fine_raster.hpp"
 #include "../../stages/framebuffer.hpp"
@@ -23,7 +24,9 @@ class StampLanes {
     fits_ = fits_ && widths.code_place[kDepthPlane].mask >> 31 == 0;  // passes()
     for (std::size_t p = 0; p < kPlanes; ++p) {
       const CodePlace& place = widths.code_place[p];
-      codes_[p] = {place.shift, Lanes{} + place.mask};
+      const AttributeWidths& attribute = widths.of_plane(p);
+      const int drop = attribute.plane.bits - attribute.local.bits;
+      codes_[p] = {place.shift, Lanes{} + place.mask, drop, drop - widths.grid_bits};
       if (p < kFirstPlanes) offsets_[p] = 0U - (place.offset << place.shift);
       fits_ = fits_ && (std::uint64_t{place.mask} << place.shift) >> 32 == 0;  // in the lower 32 bits
     }
@@ -35,21 +38,25 @@ class StampLanes {
   }
 
   /// The tiles that follow are of this primitive.
-  void begin(const ContextPacket& context, const EdgeContext& edges) {
-    state_ = context.state;
+  void begin(const SetupPacket& setup) {
+    state_ = setup.state;
+    first_x_ = setup.box.left >> widths_.tile_shift;
+    first_y_ = setup.box.top >> widths_.tile_shift;
     for (std::size_t e = 0; e < 3; ++e)
-      edges_[e] = Steps(static_cast<std::uint32_t>(edges.step_x[e]), static_cast<std::uint32_t>(edges.step_y[e]));
+      edges_[e] = Steps(static_cast<std::uint32_t>(-setup.dy[e]), static_cast<std::uint32_t>(setup.dx[e]));
+    const auto per_pixel = [&](std::int64_t step, std::size_t p) {  // ContextPacket
+      return static_cast<std::uint32_t>(round_shift(step, codes_[p].step_drop));
+    };
     Lanes x, y;
     for (std::size_t p = 0; p < kFirstPlanes; ++p) {
-      const auto step_x = static_cast<std::uint32_t>(context.step_x[p]),
-                 step_y = static_cast<std::uint32_t>(context.step_y[p]);
+      const std::uint32_t step_x = per_pixel(setup.step_x[p], p), step_y = per_pixel(setup.step_y[p], p);
       in_stamp_[p] = Lanes{0, step_x, step_y, step_x + step_y};
       x[p] = step_x;
       y[p] = step_y;
     }
     if (has_alpha_)
-      alpha_ = Steps(static_cast<std::uint32_t>(context.step_x[kFirstPlanes]),
-                     static_cast<std::uint32_t>(context.step_y[kFirstPlanes]));
+      alpha_ = Steps(per_pixel(setup.step_x[kFirstPlanes], kFirstPlanes),
+                     per_pixel(setup.step_y[kFirstPlanes], kFirstPlanes));
     stamp_x_ = x << 1;
     stamp_y_ = y << 1;
     to_corner_ = offsets_ - ((x + y) << (widths_.tile_shift - 1));
@@ -59,27 +66,27 @@ class StampLanes {
     equal_ = greater_ ^ passes.equal;
   }
 
-  /// Draws a tile. Its stamps go to `next`, and how many there are in each row of stamps in the box to `row`. Returns the
-  /// end of the visit.
-  [[gnu::always_inline]] RetirePacket draw(const TilePacket& tile, Framebuffer& frame, CounterPacket& counters,
-                                           LaneStamp*& next, std::uint8_t*& row) {
+  /// Draws a tile of the primitive. Its stamps go to `next`, and how many there are in each row of stamps in the box to
+  /// `row`. Returns the end of the visit.
+  [[gnu::always_inline]] RetirePacket draw(const SetupPacket& setup, const VisitedTile& tile, Framebuffer& frame,
+                                           CounterPacket& counters, LaneStamp*& next, std::uint8_t*& row) {
     const StampGrid& stamps = widths_.stamps;
     const PixelBounds box = to_bounds(tile.box);
     const int left = box.left & -kSize, top = box.top & -kSize;
     const std::uint64_t columns_in_box = ((std::uint64_t{2} << (box.right - box.left)) - 1) << (box.left - left);
     std::array<Lanes, 3> row_edge{};
     for (std::size_t e = 0; e < 3 && !tile.is_inside; ++e)
-      row_edge[e] = edges_[e].at(static_cast<std::uint32_t>(tile.edge_value[e]), left, top);
+      row_edge[e] = edges_[e].at(edge_at(tile.edges[e]), left, top);
     Lanes row_planes = to_corner_;  // a lane for each of the first planes, at the first pixel of a stamp
-    for (std::size_t p = 0; p < kFirstPlanes; ++p) row_planes[p] += static_cast<std::uint32_t>(tile.anchor[p]);
+    for (std::size_t p = 0; p < kFirstPlanes; ++p) row_planes[p] += anchor(setup, tile, p);
+    const std::uint32_t alpha_anchor = has_alpha_ ? anchor(setup, tile, kFirstPlanes) : 0;
     if ((left | top) != 0)
       row_planes +=
           stamp_x_ * static_cast<std::uint32_t>(left / kSize) + stamp_y_ * static_cast<std::uint32_t>(top / kSize);
     const auto row_stride = static_cast<std::size_t>(kSize * frame.stride);
-    std::size_t row_at =
-        frame.at((tile.key.tile_x << widths_.tile_shift) + left, (tile.key.tile_y << widths_.tile_shift) + top);
+    std::size_t row_at = frame.at((tile.x << widths_.tile_shift) + left, (tile.y << widths_.tile_shift) + top);
     int row_number = stamps.stamp_at(left, top);
-    unsigned covered = 0, passed = 0;
+    Lanes covered_of{}, passed_of{};  // by lane, negative
     int full = 0;
     Lanes largest{};
     for (int y = top; y <= box.bottom; y += kSize) {
@@ -103,14 +110,14 @@ class StampLanes {
             return (value >> place.shift) & place.mask;
           };
           const Lanes depth = code(Plane<kDepthPlane>()), stored = load(frame.depth, at, frame.stride);
-          const Lanes pass = passes(depth, stored) & kLanesOf[mask];
+          const Lanes inside = kLanesOf[mask], pass = passes(depth, stored) & inside;
           const unsigned bits = bits_of(pass);
           if (bits != 0) {
             if (state_.depth_write) store(write_where(pass, depth, stored), frame.depth, at, frame.stride);
             if (state_.color_write) {
               const Channels<Lanes> channels{code(Plane<kColorPlane>()), code(Plane<kColorPlane + 1>()),
                                              code(Plane<kColorPlane + 2>()),
-                                             has_alpha_ ? alpha(tile, number) : Lanes{}};
+                                             has_alpha_ ? alpha(alpha_anchor, number) : Lanes{}};
               const Lanes color = pack(channels);
               store(write_where(pass, color, load(frame.color, at, frame.stride)), frame.color, at, frame.stride);
             }
@@ -119,8 +126,8 @@ class StampLanes {
               largest = halfplane::largest(largest, depth);
             }
           }
-          covered += kCountOf[mask];
-          passed += kCountOf[bits];
+          covered_of += inside;
+          passed_of += pass;
           *next++ = {static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(mask),
                      static_cast<std::uint8_t>(bits)};
         }
@@ -134,13 +141,14 @@ class StampLanes {
       row_at += row_stride;
       row_number += stamps.stamps_per_row;
     }
-    if (is_counted(tile.kind)) {
-      counters.covered += covered;
+    const std::uint32_t passed = minus_sum(passed_of);
+    if (is_counted(setup.kind)) {
+      counters.covered += minus_sum(covered_of);
       counters.depth_passed += passed;
       if (state_.writes()) counters.written += passed;
     }
     RetirePacket retired;
-    retired.key = tile.key;
+    retired.key = {setup.primitive_id, static_cast<std::uint16_t>(tile.x), static_cast<std::uint16_t>(tile.y)};
     const bool is_full = full == stamps.stamps();
     set_hiz_update(retired, state_, is_full, passed != 0,
                    is_full ? std::max({largest[0], largest[1], largest[2], largest[3]}) : 0, config_, widths_);
@@ -177,15 +185,30 @@ class StampLanes {
   struct Code {
     int shift = 0;
     Lanes mask{};
+    int drop = 0, step_drop = 0;  ///< bits that the plane has below a local anchor, and its steps below those per pixel
   };
 
-  [[nodiscard]] Lanes alpha(const TilePacket& tile, int stamp) const {
+  [[nodiscard]] std::uint32_t edge_at(EdgeValue value) const {
+    return static_cast<std::uint32_t>(widths_.edge_value.bits <= 32 ? value : saturate_tile_edge(value, widths_));
+  }
+
+  /// TilePacket::anchor, modulo 2^32; bits above those of a local plane are undefined.
+  [[nodiscard]] std::uint32_t anchor(const SetupPacket& setup, const VisitedTile& tile, std::size_t p) const {
+    const auto offset = [&](int tiles) {  // subpixels
+      return static_cast<std::uint64_t>(std::int64_t{tiles}) << (widths_.tile_shift + widths_.grid_bits);
+    };
+    return static_cast<std::uint32_t>((static_cast<std::uint64_t>(setup.value[p]) +
+                                       static_cast<std::uint64_t>(setup.step_x[p]) * offset(tile.x - first_x_) +
+                                       static_cast<std::uint64_t>(setup.step_y[p]) * offset(tile.y - first_y_)) >>
+                                      codes_[p].drop);
+  }
+
+  [[nodiscard]] Lanes alpha(std::uint32_t at_anchor, int stamp) const {
     constexpr std::size_t p = kFirstPlanes;
     const PixelOffset at = widths_.stamps.origin_of(stamp);
     const int half_tile = 1 << (widths_.tile_shift - 1);
-    const std::uint32_t anchor =
-        static_cast<std::uint32_t>(tile.anchor[p]) - (widths_.code_place[p].offset << codes_[p].shift);
-    return (alpha_.at(anchor, at.x - half_tile, at.y - half_tile) >> codes_[p].shift) & codes_[p].mask;
+    const std::uint32_t from = at_anchor - (widths_.code_place[p].offset << codes_[p].shift);
+    return (alpha_.at(from, at.x - half_tile, at.y - half_tile) >> codes_[p].shift) & codes_[p].mask;
   }
 
   /// pack_color(). The sums of rgb565 have 16 bits, for which SSE2 has a multiplication.
@@ -212,7 +235,7 @@ class StampLanes {
     return static_cast<unsigned>(both | both >> 32);
 #endif
   }
-  /// The inverse, and the number of bits.
+  /// The inverse.
   static constexpr std::array<Lanes, 16> kLanesOf = [] {
     std::array<Lanes, 16> lanes{};
     for (unsigned bits = 0; bits < 16; ++bits) {
@@ -221,7 +244,9 @@ class StampLanes {
     }
     return lanes;
   }();
-  static constexpr std::array<std::uint8_t, 16> kCountOf{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+  [[nodiscard]] static std::uint32_t minus_sum(const Lanes& lanes) {
+    return 0U - (lanes[0] + lanes[1] + lanes[2] + lanes[3]);
+  }
 
   [[nodiscard]] static Lanes load(const Framebuffer::Image& image, std::size_t at, int stride) {
     std::array<std::uint64_t, kSize> rows;
@@ -240,6 +265,7 @@ class StampLanes {
   Widths widths_;
   bool fits_ = false, has_alpha_ = false;
   PrimitiveState state_;
+  int first_x_ = 0, first_y_ = 0;       ///< the first tile
   Lanes greater_{}, less_{}, equal_{};  ///< DepthOutcomes: the first, and where the others differ from it
   std::array<Steps, 3> edges_;
   std::array<Lanes, kFirstPlanes> in_stamp_{};  ///< of a plane, from the first pixel of a stamp to each

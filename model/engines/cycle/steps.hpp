@@ -64,7 +64,7 @@ class StepItems {
   }
   /// Room for `most` items more; add() says how many were written.
   [[nodiscard]] Item* room(std::size_t most) {
-    if (items_.size() < size_ + most) grow(most);
+    if (room_ < size_ + most) grow(most);
     return items_.data() + size_;
   }
   void add(std::size_t items) { size_ += items; }
@@ -75,10 +75,13 @@ class StepItems {
   void clear() { size_ = 0; }
 
  private:
-  [[gnu::noinline]] void grow(std::size_t most) { items_.resize(2 * (size_ + most)); }
+  [[gnu::noinline]] void grow(std::size_t most) {
+    room_ = 2 * (size_ + most);
+    items_.resize(room_);
+  }
 
   std::vector<Item> items_;
-  std::size_t size_ = 0;
+  std::size_t size_ = 0, room_ = 0;  ///< room_: items_.size(), whose division by an item's size is asked for often
 };
 
 /// Arguments of CacheTags::set().
