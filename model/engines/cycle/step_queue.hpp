@@ -36,7 +36,7 @@ class StepQueue {
   ~StepQueue() { stop(true); }
 
   /// With more than one thread batches run on a thread of their own; where none is to be had, on this. The thread stays
-  /// from frame to frame: a new one has 2 MB of thread-local memory of the functional engine to clear.
+  /// from frame to frame.
   void begin(int threads);
   /// The batch that is being filled.
   [[nodiscard]] Steps& filling() { return *filling_; }
