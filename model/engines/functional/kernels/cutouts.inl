@@ -78,7 +78,8 @@ struct SampledColors {
   HALFPLANE_INLINE SampledColors(Bin& bin_, const BinTriangle& t_) : bin(bin_), t(t_) {}
 
   HALFPLANE_NOINLINE void find_gains() {
-    for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) gain[k] = color_at_sample(bin, t, k);
+    const ColorGains gains(bin, t);
+    for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) gain[k] = gains(bin, k);
     has_gains = true;
   }
   HALFPLANE_INLINE const ChannelPairs& gain_at(unsigned m) {
@@ -198,7 +199,13 @@ HALFPLANE_INLINE void store_cutout_depths(Bin& bin, int tile, unsigned samples) 
 HALFPLANE_NOINLINE void need_sample_depths(Bin& bin, int tile) {
   if (bin.depth_owner[tile] == Bin::kInMemory) return;
   if (bin.depth_owner[tile] == Bin::kCutouts) return store_cutout_depths(bin, tile, bin.samples);
+  const bool fills = bin.is_narrow && bin.depth_owner[tile] == Bin::kCleared;
   for (unsigned k = 0; k < bin.samples; ++k) {
+    if (fills) {
+      U64::load(bin.cleared_depths.data())
+          .store(bin.sample_memory.narrow_depth.data() + bin.sample_place(0, first_of(tile)) + k * kTilePixels);
+      continue;
+    }
     const TileBlocks blocks = sample_depths(bin, tile, k);
     for (std::size_t i = 0; i < 4; ++i)
       store_sample(bin, k, static_cast<std::size_t>(first_of(tile)) + kBlockPixels * i, blocks[i]);

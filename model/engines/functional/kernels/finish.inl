@@ -126,12 +126,12 @@ HALFPLANE_INLINE void write_color_rows(const Bin& bin, const BinTriangle& left, 
 }
 
 HALFPLANE_INLINE I16 mean_colors(const Bin& bin, std::size_t at) {
-  ColorSums sums(bin);
   const std::uint32_t* const from = bin.sample_memory.color.data() + bin.sample_place(0, at);
-  if (bin.samples == 4)
-    for (unsigned k = 0; k < 4; ++k) sums.add(I16::load(from + k * kBlockPixels));
-  else
-    for (unsigned k = 0; k < bin.samples; ++k) sums.add(I16::load(from + k * kBlockPixels));
+  const auto sample = [from](unsigned k) HALFPLANE_LAMBDA { return I16::load(from + k * kBlockPixels); };
+  if (bin.samples == 4 && bin.config.color_format == ColorFormat::rgba8888)
+    return mean_of_bytes(sample(0), sample(1), sample(2), sample(3));
+  ColorSums sums(bin);
+  for (unsigned k = 0; k < bin.samples; ++k) sums.add(sample(k));
   return sums.mean(bin);
 }
 

@@ -450,7 +450,27 @@ HALFPLANE_LEAF I16 select_by_bits(std::uint32_t bits, const I16& a, const I16& b
 #endif
 }
 
-/// The same for four numbers of 16 bits a pixel, of which a block's left half has eight and its right half eight.
+/// Mean of each byte, a half rounded up.
+HALFPLANE_LEAF I16 mean_of_bytes(const I16& a, const I16& b) {
+#if HALFPLANE_ISA == 512
+  I16 r;
+  r.part[0] = (I16::Register)_mm512_avg_epu8((__m512i)a.part[0], (__m512i)b.part[0]);
+  return r;
+#elif HALFPLANE_ISA == 256
+  I16 r;
+  for (int i = 0; i < 2; ++i) r.part[i] = (I16::Register)_mm256_avg_epu8((__m256i)a.part[i], (__m256i)b.part[i]);
+  return r;
+#else
+  return (a | b) - (shift_right_logical(a ^ b, 1) & 0x7f7f7f7f);
+#endif
+}
+/// The same of four: where the means of two add up to an odd number and one of them is rounded, theirs is 1 too large.
+HALFPLANE_LEAF I16 mean_of_bytes(const I16& a, const I16& b, const I16& c, const I16& d) {
+  const I16 first = mean_of_bytes(a, b), second = mean_of_bytes(c, d);
+  return mean_of_bytes(first, second) - (((a ^ b) | (c ^ d)) & (first ^ second) & 0x01010101);
+}
+
+/// select_by_bits() for four numbers of 16 bits a pixel, of which a block's left half has eight and its right half eight.
 HALFPLANE_LEAF void replace_by_bits(std::uint32_t bits, const S32& with, S32& left, S32& right,
                                     [[maybe_unused]] const I16& to_sign) {
 #if HALFPLANE_ISA == 512

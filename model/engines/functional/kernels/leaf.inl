@@ -306,12 +306,14 @@ HALFPLANE_LEAF Channels channels_of(std::uint32_t rgba) {
   using Unsigned __attribute__((vector_size(32))) = std::uint64_t;
   return (Channels)((Unsigned{} + rgba) >> Unsigned{0, 8, 16, 24}) & 255;
 }
+using Codes __attribute__((vector_size(16))) = std::int32_t;
 /// The lower halves: red with blue, green with alpha.
-HALFPLANE_LEAF ChannelPairs channel_pairs(const Channels& value) {
-  using Codes __attribute__((vector_size(16))) = std::int32_t;
-  const Codes code = __builtin_convertvector(value, Codes);
+HALFPLANE_LEAF ChannelPairs channel_pairs(const Codes& code) {
   const Codes pair = (code & 0xffff) | __builtin_shufflevector(code, code, 2, 3, 0, 1) << 16;
   return {pair[0], pair[1]};
+}
+HALFPLANE_LEAF ChannelPairs channel_pairs(const Channels& value) {
+  return channel_pairs(__builtin_convertvector(value, Codes));
 }
 /// round_shift(). The lanes have no signed shift: the shifted sign bit is copied to all bits above it.
 HALFPLANE_LEAF Channels round_shift_channels(const Channels& value, int bits) {
