@@ -137,6 +137,7 @@ module coarse_raster (
   logic          is_start_q;        // this tile starts the row: row_q of edges and planes copies it now
   logic          moved_start_q;     // the row's start has moved to tile_x_q; start_x_q follows
   logic [TX-1:0] start_x;
+  logic          moved_q, returned_q, row_ended_q, moved_left_q;  // in the cycle before, for the planes
   logic          clears;     // the bounds of a group of tiles each cycle
   logic [TX-1:0] group_end;  // its last tile
   logic [2:0]    edge_is_outside_q, no_better_left_q, no_better_right_q;
@@ -315,7 +316,6 @@ module coarse_raster (
   // makes its high bits the local anchor. The context holds steps per pixel, narrowed to the local guard bits.
   // No decision waits for a plane, and where the walk goes is known late: planes keep the tile before, and how it was left.
   logic [raster_pkg::ALL_LOCAL_BITS-1:0] anchor;
-  logic moved_q, returned_q, row_ended_q, moved_left_q;
   always_ff @(posedge clk) begin
     moved_q      <= goes_on;
     returned_q   <= returns;
